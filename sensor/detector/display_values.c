@@ -1,6 +1,8 @@
 /* sensor/detector/display_values.c: quantisation to raw counts and to display values; display colours. */
 #include "sensor/detector/display_values.h"
 
+#include <float.h>
+
 void detector_counts(uint16_t *out, const float *in, size_t count, double step, uint16_t full)
 {
     const double per = 1 / step;
@@ -118,9 +120,14 @@ void detector_display_db(void *out, const float *power, size_t count, double dyn
     }
 }
 
-/* ---- colours: white balance and the matrix from three rectangular bands to linear sRGB ---------- */
+/* ---- colours: white balance, and from three rectangular bands to linear sRGB ---------------------- */
 
-static const double matrix[3][3] = {{1.0174, 0.1380, -0.1554}, {-0.1259, 1.1569, -0.0310}, {-0.0079, -0.1236, 1.1315}};
+/* Of R, G, B, sqrt(R G), sqrt(G B), sqrt(R B); printed by etc/colour/make/correction.py. A row adds up to 1. */
+static const double correction[3][6] = {
+    {0.5116, -0.3195, 0.0982, 1.2456, -0.1550, -0.3809},
+    {-0.0141, 1.2421, -0.0727, -0.2215, 0.0402, 0.0260},
+    {-0.0213, -0.0468, 1.2395, -0.0022, -0.2667, 0.0975},
+};
 
 static const double luminance[3] = {0.2126, 0.7152, 0.0722}; /* of the primaries, ITU-R BT.709 */
 
@@ -137,25 +144,43 @@ void display_colour(DisplayColour *out, const double white[3], double zero, doub
     }
 }
 
-/* No call to a library in the loop over pixels, as fmin is one. */
+/* No call to a library, no branch in the loop over pixels: it uses vectors. */
 static inline double least_of(double a, double b) { return a < b ? a : b; }
+static inline double most_of(double a, double b) { return a > b ? a : b; }
+
+/* Of values below zero, which noise leaves in the dark, there is no root. */
+static inline double root_of(double a, double b) { return sqrt(most_of(a, 0) * most_of(b, 0)); }
+
+static inline double corrected(const double k[6], const double term[6])
+{
+    return k[0] * term[0] + k[1] * term[1] + k[2] * term[2] + k[3] * term[3] + k[4] * term[4] + k[5] * term[5];
+}
 
 void display_colour_apply(float *const out[3], const float *const in[3], size_t count, const DisplayColour *colour)
 {
-    for (size_t i = 0; i < count; i++) {
-        const double seen[3] = {in[0][i], in[1][i], in[2][i]};
-        double       balanced[3], rgb[3];
-        if (!isfinite(seen[0] + seen[1] + seen[2])) {
-            for (int c = 0; c < 3; c++) out[c][i] = (float)seen[c];
-            continue;
+    enum { block = 256 };
+    const DisplayColour of = *colour;
+    for (size_t from = 0; from < count; from += block) {
+        const size_t n = count - from < block ? count - from : block;
+        float        shown[3][block];
+        const float *restrict r = in[0] + from, *restrict g = in[1] + from, *restrict b = in[2] + from;
+        for (size_t i = 0; i < n; i++) {
+            const double red = r[i], green = g[i], blue = b[i];
+            const bool   finite = fabs(red + green + blue) <= DBL_MAX;
+            const double x = least_of((red - of.zero) * of.gain[0], of.most);
+            const double y = least_of((green - of.zero) * of.gain[1], of.most);
+            const double z = least_of((blue - of.zero) * of.gain[2], of.most);
+            const double term[6] = {x, y, z, root_of(x, y), root_of(y, z), root_of(x, z)};
+            const double rgb[3] = {corrected(correction[0], term), corrected(correction[1], term),
+                                   corrected(correction[2], term)};
+            const double grey = luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2];
+            const double least = least_of(least_of(rgb[0], rgb[1]), rgb[2]);
+            const double mixed = grey / (grey - least);
+            const bool   beyond = (grey > 0) & (least < 0);
+            shown[0][i] = (float)(finite ? of.zero + (beyond ? grey + mixed * (rgb[0] - grey) : rgb[0]) : red);
+            shown[1][i] = (float)(finite ? of.zero + (beyond ? grey + mixed * (rgb[1] - grey) : rgb[1]) : green);
+            shown[2][i] = (float)(finite ? of.zero + (beyond ? grey + mixed * (rgb[2] - grey) : rgb[2]) : blue);
         }
-        for (int c = 0; c < 3; c++) balanced[c] = least_of((seen[c] - colour->zero) * colour->gain[c], colour->most);
-        for (int c = 0; c < 3; c++)
-            rgb[c] = matrix[c][0] * balanced[0] + matrix[c][1] * balanced[1] + matrix[c][2] * balanced[2];
-        const double grey = luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2];
-        const double least = least_of(least_of(rgb[0], rgb[1]), rgb[2]);
-        const double share = grey > 0 && least < 0 ? grey / (grey - least) : 1;
-        for (int c = 0; c < 3; c++)
-            out[c][i] = (float)(colour->zero + (share < 1 ? grey + share * (rgb[c] - grey) : rgb[c]));
+        for (int c = 0; c < 3; c++) memcpy(out[c] + from, shown[c], n * sizeof *shown[c]);
     }
 }

@@ -24,19 +24,26 @@ void                detector_display_db(void *out, const float *power, size_t co
 
 /* ---- colours ------------------------------------------------------------------------------------ */
 
-/* Three visible bands to display colours: white balance and a matrix.
+/* Three visible bands to display colours: white balance and a root polynomial.
  *
  * The bands are rectangles, 0.6-0.7, 0.5-0.6 and 0.4-0.5 um; unlike the responses of an eye or a camera. White balance
  * divides each band by the radiance of white horizontal ground under the present sun and sky, so that it is white at
- * any elevation of the sun; a matrix then converts to linear sRGB (IEC 61966-2-1, white point D65). For display images
- * only: radiance in files and raw counts are not changed.
+ * any elevation of the sun; R, G, B and the roots of RG, GB, RB then add up to linear sRGB (IEC 61966-2-1, white point
+ * D65), so that twice the light is twice the colour, and grey stays grey (Finlayson, Mackiewicz & Hurlbert, IEEE Trans.
+ * Image Process. 24, 1460, 2015). For display images only: radiance in files and raw counts are not changed.
  *
- * The matrix minimises the sum of the squared CIEDE2000 differences of 24 colours, with rows that add up to 1 (white
- * stays white). Reflectances: ColorChecker, N. Ohta 1997, from the colour-science package 0.4.7, 400-700 nm by
- * 10 nm; observer CIE 1931, 2 degrees; illuminant D65, integrated over the bands by the trapezoidal rule. Residual:
- * CIEDE2000 3.0 on average over the 24, 7.2 at most (white balance alone: 4.4, 9.8); over grass, loam, paint and
- * similar spectra not used in the fit, 1.5 and 3.6 (2.3, 4.1): tests/sensor/test_colour.c. Three rectangular bands
- * resolve no more: a peak within a band is lost, and a green paint of hue 145 degrees is displayed at 134. */
+ * The coefficients are fitted to patches, leaves, soils, skies and lamps under D65 for the observer CIE 1931, 2
+ * degrees: etc/colour/make/correction.py, which says how. CIEDE2000 on average and at the 95th percentile, of what is
+ * not in the fit (in brackets by a matrix fitted to the ColorChecker, and by white balance alone): the 99 test surfaces
+ * of CIE 224:2017 4.7, 9.3 (5.0, 10.0; 6.4, 11.6); the ColorChecker 2.4, 5.5 (2.9, 6.4; 4.4, 8.8); grass, loam, paint
+ * and similar spectra 1.5, 3.3 (1.5, 3.2; 2.3, 3.9). Three rectangular bands resolve little more: 3.9 and 8.7 if fitted
+ * to the 99 themselves, since where in a band a spectrum rises is lost; a green paint of hue 145 degrees is displayed
+ * at 132. Light of 0.5-0.6 um alone is 15 off.
+ *
+ * An output rises with its own band where no band is more than 30 times another. The noise of a grey is 0.99, 1.16,
+ * 1.17 that of a band (R, G, B); it is at most 1.4 times that where bands are within 3 of each other, 2.3 within 10 (R
+ * of saturated colours). Negative values, of noise, have no root: R of a grey is 2 % low at a signal of 3 times its
+ * noise and 13 % at 1. tests/sensor/test_colour.c, tests/system/test_colour_judge.sh. */
 typedef struct DisplayColour {
     double zero;    /* value of zero light: 0 for radiance, the dark level for counts */
     double gain[3]; /* R G B; preserves the mean of the three whites */

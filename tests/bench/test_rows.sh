@@ -82,7 +82,7 @@ precision/sensor)
     tunables "plants simplified" "rays a pixel among plants" "reach of low plants" "light between leaves" "rays a pixel" \
         "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
         "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "a small target's place" "electrons of a radiance" \
-        "display" "converter" "display's curve"
+        "display" "converter" "display's curve" "display's colours"
     some_have_limits
     rows "steps of sampling: bare ground, quarter: horizon" "steps of sampling: 20 vehicles, 8-12 um, checkerboard: targets whole" \
         "steps of sampling: woods, default: woods, means of 4 x 4" "steps of sampling: flight on a vehicle, quarter: stated error" ;;

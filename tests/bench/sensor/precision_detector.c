@@ -5,6 +5,7 @@
 #include "sensor/detector/blur_private.h"
 #include "sensor/detector/photons.h"
 #include "sensor/detector/display_values.h"
+#include "tests/sensor/colorimetry.h"
 
 #include <stdlib.h>
 
@@ -399,6 +400,84 @@ static void tunable_curve(Bench *bench)
                   work, point, settings);
 }
 
+/* ---- the display's colours ---------------------------------------------------------------------- */
+
+typedef struct ColourSet {
+    int kind; /* 0: white balance alone; 1: the best matrix that etc/colour/make/correction.py finds; 2: the display's
+                 own */
+    DisplayColour colour;
+    const float  *in[3];
+    float        *out[3];
+    size_t        count;
+} ColourSet;
+
+static void run_colours(void *user)
+{
+    static const double matrix[3][3] = {
+        {0.8967, 0.2737, -0.1704}, {-0.0968, 1.1286, -0.0318}, {-0.0018, -0.1399, 1.1417}};
+    const ColourSet *s = user;
+    if (s->kind == 2) display_colour_apply(s->out, s->in, s->count, &s->colour);
+    for (size_t i = 0; s->kind < 2 && i < s->count; i++) {
+        double v[3];
+        for (int c = 0; c < 3; c++) v[c] = (double)s->in[c][i] * s->colour.gain[c];
+        for (int c = 0; c < 3; c++)
+            s->out[c][i] =
+                (float)(s->kind == 0 ? v[c] : fmax(0, matrix[c][0] * v[0] + matrix[c][1] * v[1] + matrix[c][2] * v[2]));
+    }
+    bench_keep(s->out[0]);
+}
+
+/* Mean CIEDE2000 of the ColorChecker's patches as shown, to those an eye sees. */
+static double colours_apart(ColourSet set)
+{
+    static float r[patch_count], g[patch_count], b[patch_count];
+    double       mean = 0;
+    set.in[0] = set.out[0] = r, set.in[1] = set.out[1] = g, set.in[2] = set.out[2] = b;
+    set.count = patch_count;
+    for (int i = 0; i < patch_count; i++) {
+        double w[3];
+        bands_see(w, patch[i].reflectance);
+        r[i] = (float)w[0], g[i] = (float)w[1], b[i] = (float)w[2];
+    }
+    run_colours(&set);
+    for (int i = 0; i < patch_count; i++) {
+        double seen[3], want[3], got[3];
+        eye_sees(seen, patch[i].reflectance);
+        lab_of(want, seen);
+        lab_of_rgb(got, (const double[3]){r[i] / set.colour.white, g[i] / set.colour.white, b[i] / set.colour.white});
+        mean += ciede2000(want, got) / patch_count;
+    }
+    return mean;
+}
+
+static void tunable_colours(Bench *bench)
+{
+    enum { settings = 3 };
+    static const char *const name[settings] = {"white balance alone", "and a matrix", "and a root polynomial"};
+    static ColourSet         set[settings];
+    static float             in[3][curve_px], out[3][curve_px];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    double                   white[3];
+    for (int c = 0; c < 3; c++) {
+        white[c] = sum_of(daylight_spectrum, NULL, NULL, 20 - 10 * c, 11, true);
+        for (int i = 0; i < curve_px; i++)
+            in[c][i] = (float)(white[c] * random_uniform(5, 1, (uint32_t)c, (uint64_t)i));
+    }
+    for (int k = 0; k < settings; k++) {
+        set[k] =
+            (ColourSet){.kind = k, .in = {in[0], in[1], in[2]}, .out = {out[0], out[1], out[2]}, .count = curve_px};
+        display_colour(&set[k].colour, white, 0, INFINITY);
+        work[k] = (BenchWork){run_colours, &set[k], curve_px};
+        point[k] =
+            (BenchSetting){.setting = name[k], .error = colours_apart(set[k]), .is_default = k == 2, .bytes = 144};
+    }
+    bench_tunable(bench,
+                  &(BenchTunable){"display's colours", "sensor/detector/display_values.c", "a pixel", "CIEDE2000",
+                                  "mean of the ColorChecker, CIE 1931 under D65", 2.5},
+                  work, point, settings);
+}
+
 Status precision_detectors(Bench *bench)
 {
     Status status = tunable_blur(bench);
@@ -408,5 +487,6 @@ Status precision_detectors(Bench *bench)
     tunable_counts(bench, true);
     tunable_counts(bench, false);
     tunable_curve(bench);
+    tunable_colours(bench);
     return STATUS_OK;
 }
