@@ -76,7 +76,7 @@ precision/render)
             for then in "in it" afterwards; do rows "shade of the $when, $then, $kind: colder by.*,yes,"; done
         done
     done
-    rows "shade of past hours: ground that was never shaded" ;;
+    rows "shade of past hours: ground that was never shaded" "daylight, b, sun from 18 degrees" "daylight, nir, sun 8 degrees up" ;;
 precision/sensor)
     tunables "plants simplified" "rays a pixel among plants" "reach of low plants" "light between leaves" "rays a pixel" \
         "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
