@@ -1,5 +1,3 @@
-/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar for rows of
- * CSV. */
 /* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar clutter for
  * rows of CSV. */
 #include "render/probe.h"
@@ -110,14 +108,16 @@ static const char *rays_row(void *state, const ProbeValue *in, ProbeValue *out)
 
 /* ---- atmosphere -------------------------------------------------------------------------------- */
 
-enum { probe_models_max = 8 };
+enum { probe_models_max = 16 };
 
-/* Models are opened when a row first names them and cached; one that failed is cached as NULL. */
+/* Models are opened when a row first names them and cached, for the standard channels and for each further one, whose
+ * tables take a place among them; one that failed is cached as NULL. */
 typedef struct AtmosphereProbe {
-    int         count;
-    char        name[probe_models_max][64];
-    Atmosphere *model[probe_models_max];
-    Arena      *arena; /* of the air under a row's weather */
+    int                    count;
+    char                   name[probe_models_max][64];
+    const SpectralChannel *further[probe_models_max]; /* NULL: the standard channels */
+    Atmosphere            *model[probe_models_max];
+    Arena                 *arena; /* of the air under a row's weather */
 } AtmosphereProbe;
 
 static Status atmosphere_probe_open(void **state, int argc, char **argv)
@@ -139,14 +139,16 @@ static void atmosphere_probe_close(void *state)
     free(probe);
 }
 
-static const char *find_model(Atmosphere **out, AtmosphereProbe *probe, const char *name)
+static const char *find_model(Atmosphere **out, AtmosphereProbe *probe, const char *name,
+                              const SpectralChannel *further)
 {
     int i = 0;
-    while (i < probe->count && strcmp(probe->name[i], name) != 0) i++;
+    while (i < probe->count && (strcmp(probe->name[i], name) != 0 || probe->further[i] != further)) i++;
     if (i == probe->count) {
         if (i == probe_models_max || strlen(name) >= sizeof probe->name[i]) return "too many models, or name too long";
         if (atmosphere_open(&probe->model[i], name) != STATUS_OK) probe->model[i] = NULL;
         snprintf(probe->name[i], sizeof probe->name[i], "%s", name);
+        probe->further[i] = further;
         probe->count++;
     }
     *out = probe->model[i];
@@ -170,16 +172,18 @@ static const char *under_weather(const Atmosphere **out, AtmosphereProbe *probe,
     return atmosphere_in(out, model, &state, ~0u, probe->arena) == STATUS_OK ? NULL : "out of memory";
 }
 
-/* Model, visibility_km and band, which begin a row. */
+/* Model, visibility_km and band, which begin a row. A further channel has its place until the next row. */
 static const char *air_of_row(Atmosphere **model, double *visibility_m, AirBand *band, AtmosphereProbe *probe,
                               const ProbeValue *in)
 {
-    const char *why = find_model(model, probe, in[0].text);
-    if (why) return why;
-    *band = AIR_B;
-    while (*band < AIR_BAND_COUNT && strcmp(air_band_name(*band), in[2].text) != 0) ++*band;
-    if (*band == AIR_BAND_COUNT) return "band must be b, g, r, pan, nir, mwir or lwir";
+    const SpectralChannel *channel = channel_named(in[2].text, strlen(in[2].text));
+    if (!channel) return "band must be b, g, r, pan, nir, mwir, lwir or a further channel of etc/channels.csv";
+    channels_standard();
+    if (!channel->standard) channel_choose(channel);
+    *band = channel->place;
     *visibility_m = in[1].number * 1e3;
+    const char *why = find_model(model, probe, in[0].text, channel->standard ? NULL : channel);
+    if (why) return why;
     return *visibility_m > 0 ? NULL : "visibility_km must be above 0";
 }
 
@@ -233,6 +237,25 @@ static const char *sky_row(void *state, const ProbeValue *in, ProbeValue *out)
     return NULL;
 }
 
+static const char *sunlight_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    Atmosphere       *model;
+    const Atmosphere *here;
+    AirBand           band;
+    double            visibility_m;
+    const char       *why = air_of_row(&model, &visibility_m, &band, state, in);
+    if (why) return why;
+    if (!(in[3].number >= 0)) return "heights must be at or above the ground";
+    if (!(in[4].number >= 0 && in[4].number <= 90)) return "sun_zenith_deg must be 0 .. 90";
+    why = under_weather(&here, state, model, &in[5], &in[6], visibility_m);
+    if (why) return why;
+    SunAir sun;
+    atmosphere_sun(&sun, here, visibility_m, band, in[3].number, in[4].number * rad_per_deg);
+    out[0].number = sun.direct_normal_w_m2;
+    out[1].number = sun.diffuse_horizontal_w_m2;
+    return NULL;
+}
+
 const Probe render_probes[] = {
     {.name = "planck",
      .help = "in-band radiance of a black body and its derivative in temperature",
@@ -250,8 +273,9 @@ const Probe render_probes[] = {
      .row = rays_row,
      .close = rays_close},
     {.name = "atmosphere",
-     .help = "transmittance and path radiance from the tables of etc/atmosphere; temp_k: of the target; air_temp_k and "
-             "humidity_pct: of the air at the ground, without them the model's own",
+     .help =
+         "transmittance and path radiance from the tables of etc/atmosphere; band: any channel of etc/channels.csv; "
+         "temp_k: of the target; air_temp_k and humidity_pct: of the air at the ground, without them the model's own",
      .in = "model$,visibility_km,band$,observer_m,target_m,range_km,temp_k,sun_zenith_deg?,rel_azimuth_deg?,"
            "air_temp_k?,humidity_pct?",
      .out = "tau,path_radiance,sun_tau,scattered",
@@ -267,6 +291,14 @@ const Probe render_probes[] = {
      .out = "radiance,scattered",
      .open = atmosphere_probe_open,
      .row = sky_row,
+     .close = atmosphere_probe_close},
+    {.name = "sunlight",
+     .help = "light of the sun on a plane that faces it and of the sky on a level one, in a band, by the same tables, "
+             "at 1 AU",
+     .in = "model$,visibility_km,band$,observer_m,sun_zenith_deg,air_temp_k?,humidity_pct?",
+     .out = "direct_w_m2,diffuse_w_m2",
+     .open = atmosphere_probe_open,
+     .row = sunlight_row,
      .close = atmosphere_probe_close},
     {.name = "heat-ground",
      .arguments = PROBE_WEATHER_ARGUMENTS,

@@ -178,7 +178,7 @@ static void sky_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands
     air_day_sky(seen, thermal, air->light.day, air->eye_height_m, acos(climb), &azimuth_rad, 1);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(bands >> b & 1)) continue;
-        double added = b == AIR_LWIR ? 0 : seen[0][b] * air->light.scattered_scale;
+        double added = b == AIR_LWIR ? 0 : seen[0][b] * air->light.scattered_scale[b];
         if (b >= AIR_MWIR) added += thermal[b - AIR_MWIR] * air->light.thermal_scale[b - AIR_MWIR];
         out[b].transmittance[i] = out[b].sun_transmittance[i] = out[b].air_transmittance[i] = 0;
         out[b].added_w_m2_sr[i] = (float)added;
@@ -197,7 +197,7 @@ static void solid_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned ban
     air_day_scattered(seen, sun, air->light.day, &path, &azimuth_rad, 1);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(bands >> b & 1)) continue;
-        const double scattered = b == AIR_LWIR ? 0 : seen[0][b] * air->light.scattered_scale;
+        const double scattered = b == AIR_LWIR ? 0 : seen[0][b] * air->light.scattered_scale[b];
         if (b < AIR_MWIR) {
             out[b].transmittance[i] = out[b].sun_transmittance[i] = out[b].air_transmittance[i] =
                 (float)exp(-way.sun[b]);
@@ -206,7 +206,8 @@ static void solid_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned ban
         }
         const double *depth = way.emitted[b - AIR_MWIR], own = exp(-depth[air_temps]);
         out[b].air_transmittance[i] = (float)own;
-        out[b].sun_transmittance[i] = (float)(b == AIR_MWIR && air->light.scattered_scale > 0 ? exp(-way.sun[b]) : own);
+        out[b].sun_transmittance[i] =
+            (float)(b == AIR_MWIR && air->light.scattered_scale[b] > 0 ? exp(-way.sun[b]) : own);
         out[b].transmittance[i] = temp_k > 0 ? (float)exp(-depth_of(depth, temp_k)) : out[b].sun_transmittance[i];
         out[b].added_w_m2_sr[i] =
             (float)(way.thermal_w_m2_sr[b - AIR_MWIR] * air->light.thermal_scale[b - AIR_MWIR] + scattered);

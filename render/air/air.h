@@ -68,12 +68,13 @@ typedef struct Daylight {
     double zero_z_m;                   /* ENU z of the model's 0 km; heights bend with the Earth: daylight_height */
     float  warmer_k[air_warmer_nodes]; /* of the air every 500 m up from there, against weather.air_temp_k */
     const PlanckTable *planck_mwir, *planck_lwir;
-    double             day_zenith_rad; /* of the sun, at which the tables are evaluated */
-    double             sun_above;      /* share of its disc above the horizon, over the square of its distance */
-    double   thermal_scale[2], scattered_scale; /* air of another temperature than the model's; twilight, distance */
-    Droplets droplets;                          /* rain, snow, fog; the totals have them */
-    double   cloud_sky, cloud_thermal; /* clouds: factor on the sky's scattered light; share of the thermal sky that
-                                        * is cloud of air temperature */
+    double             day_zenith_rad;   /* of the sun, at which the tables are evaluated */
+    double             sun_above;        /* share of its disc above the horizon, over the square of its distance */
+    double             thermal_scale[2]; /* air of another temperature than the model's */
+    double             scattered_scale[AIR_BAND_COUNT]; /* twilight, and the sun's distance */
+    Droplets           droplets;                        /* rain, snow, fog; the totals have them */
+    double cloud_sky, cloud_thermal; /* clouds: factor on the sky's scattered light; share of the thermal sky that
+                                      * is cloud of air temperature */
 
     /* by direction; only of the requested bands */
     AirSky sky[AIR_BAND_COUNT];       /* from the ground: for mirror reflections in the scene */

@@ -20,6 +20,13 @@ typedef struct DaylightJob DaylightJob;
 /* The totals of these bands and of pan. diffuse_w_m2: the tables' own. */
 void daylight_sums(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun, unsigned bands,
                    double diffuse_w_m2[AIR_BAND_COUNT]);
+/* Light of the sky on level ground by band, over that with the sun where twilight begins; 1 above. To the horizon it is
+ * that of the tables, below it falls as measured illuminance does and has the colour that ozone gives it. By night,
+ * below -18 degrees, it stays. Illuminance is within a factor of 1.3 of clear skies' (twilight.c says whose); the
+ * bands' shares from -6 to -18 degrees within a factor of 1.5. */
+static const double twilight_begins_deg = 5;
+void twilight(double scale[AIR_BAND_COUNT], const Atmosphere *atmosphere, double visibility_m, double elevation_rad,
+              unsigned bands);
 /* What daylight is computed from, and which of it is requested. */
 typedef struct DaylightInput {
     const AirSource *source;

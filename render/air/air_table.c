@@ -48,9 +48,9 @@ static double mean_source(double radiance_w_m2_sr, double depth)
     return depth > 1e-12 ? radiance_w_m2_sr / -expm1(-depth) : 0;
 }
 
-static double log2_source(const TableJob *job, double scattered_w_m2_sr, double depth)
+static double log2_source(const TableJob *job, int b, double scattered_w_m2_sr, double depth)
 {
-    return log2(fmax(mean_source(scattered_w_m2_sr * job->air->light.scattered_scale, depth), 1e-30));
+    return log2(fmax(mean_source(scattered_w_m2_sr * job->air->light.scattered_scale[b], depth), 1e-30));
 }
 
 /* A band whose scattered light is evaluated: sunlight is below a thousandth of what 8-12 um emits. */
@@ -170,9 +170,9 @@ static void ask_slope(TableJob *job, int i)
         else air_day_scattered(seen + job->middle, sun, job->air->light.day, &path, azimuth + job->middle, 1);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!scatters(job, b)) continue;
-            job->log2_source[b][i * coarse_row + c] = log2_source(job, seen[job->middle][b], sun[b]);
+            job->log2_source[b][i * coarse_row + c] = log2_source(job, b, seen[job->middle][b], sun[b]);
             for (int a = 0; a <= job->turns && all; a++)
-                job->side[b][a][i / side_stride * side_row + c / side_stride] = log2_source(job, seen[a][b], sun[b]);
+                job->side[b][a][i / side_stride * side_row + c / side_stride] = log2_source(job, b, seen[a][b], sun[b]);
         }
     }
 }
@@ -261,7 +261,7 @@ Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena 
     /* evaluated over a sixth of the full circle at most, over a quarter of the view at least */
     job->turns = (int)clamp(ceil(turn_span * coarse_turns / sqrt(2) - 1e-9), 4, coarse_turns);
     job->middle = job->turns / 2;
-    *table = (AirTable){.scattered = air->light.scattered_scale > 0,
+    *table = (AirTable){.scattered = air->light.scattered_scale[AIR_PAN] > 0,
                         .slope_low = (float)slope_low,
                         .slope_steps = (float)(air_slopes / (slope_high - slope_low)),
                         .turn_low = (float)turn_low,

@@ -277,14 +277,15 @@ static void fill_around_sun(AirSky *sky, const SkyAnswers *answer, int b)
 }
 
 /* One direction over its ring: smooth enough for interpolation between few points. */
-static double without_ring(const DaylightJob *job, const AirSky *sky, double scattered_w_m2_sr, const double d[3])
+static double without_ring(const DaylightJob *job, const AirSky *sky, int b, double scattered_w_m2_sr,
+                           const double d[3])
 {
     const double sun[3] = {sin(job->light->day_zenith_rad), 0, cos(job->light->day_zenith_rad)};
     SkyPlace     place;
     place_in_sky(&place, sun, d, 0);
     const float *ring = &sky->around_sun[place.angle];
     const double around = (double)(ring[0] + place.angle_share * (ring[1] - ring[0]));
-    return scattered_w_m2_sr * job->light->scattered_scale * job->light->cloud_sky / around;
+    return scattered_w_m2_sr * job->light->scattered_scale[b] * job->light->cloud_sky / around;
 }
 
 static double under_clouds(const Daylight *light, int b, double clear_w_m2_sr)
@@ -303,7 +304,7 @@ static void ask_row(AskedSky *asked, const DaylightJob *job, const AirSky *sky, 
     for (int a = 0; a <= asked_azimuths; a++) {
         const double azimuth_rad = job->azimuth_rad[up < 1 ? a : 0],
                      d[3] = {flat * cos(azimuth_rad), flat * sin(azimuth_rad), up};
-        asked->scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0 : without_ring(job, sky, rows->scattered[i][a][b], d);
+        asked->scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0 : without_ring(job, sky, b, rows->scattered[i][a][b], d);
     }
     asked->thermal_w_m2_sr[i] = b < AIR_MWIR ? 0 : under_clouds(job->light, b, rows->thermal[i][b - AIR_MWIR]);
 }

@@ -1,25 +1,8 @@
 /* render/air/daylight_sums.c: total irradiance of sun and sky at a position, also over all wavelengths for its
  * temperature.
  *
- * The tables cover the sun above the horizon only. Below 5 degrees the sky keeps its shape at 5 degrees and is
- * dimmed as in twilight. */
+ * Below 5 degrees the sky keeps its shape at 5 degrees, and twilight.c has its light. */
 #include "render/air/air_private.h"
-
-/* Twilight: daylight below an elevation of 5 degrees, over its value there. Straight lines in its logarithm
- * through rounded values for a clear, moonless sky: 0.17 at the horizon, 8e-4 at the end of civil, 2e-6 of
- * nautical, 3e-7 (airglow and stars) of astronomical twilight. Right within a factor of two. */
-static double twilight(double elevation_rad)
-{
-    static const double at_deg[] = {-18, -12, -6, 0, 5}, decades[] = {-6.5, -5.7, -3.1, -0.77, 0};
-    const double        e_deg = elevation_rad / rad_per_deg;
-    if (e_deg <= at_deg[0]) return pow(10, decades[0]);
-    for (int i = 1; i < 5; i++)
-        if (e_deg <= at_deg[i]) {
-            const double f = (e_deg - at_deg[i - 1]) / (at_deg[i] - at_deg[i - 1]);
-            return pow(10, decades[i - 1] + f * (decades[i] - decades[i - 1]));
-        }
-    return 1;
-}
 
 static const double sun_radius_rad = 0.2665 * 0.017453292519943295769; /* mean over the year */
 
@@ -51,7 +34,7 @@ static void heat_of_clear_sky(Daylight *light, const AirSource *source, double z
     atmosphere_solar(&direct, atmosphere, &air, zenith_rad);
     atmosphere_solar(&diffuse, atmosphere, &air, light->day_zenith_rad);
     light->solar_direct_w_m2 = direct.direct_normal_w_m2 * light->sun_above;
-    light->solar_diffuse_w_m2 = diffuse.diffuse_horizontal_w_m2 * light->scattered_scale;
+    light->solar_diffuse_w_m2 = diffuse.diffuse_horizontal_w_m2 * light->scattered_scale[AIR_PAN];
     const double t_k = light->weather.air_temp_k, ratio = t_k / model_temp_k;
     const double down_w_m2 = atmosphere_longwave_down(atmosphere, light->weather.visibility_m) * pow(ratio, 4);
     light->longwave_loss_w_m2 = fmax(sigma_w_m2_k4 * pow(t_k, 4) - down_w_m2, 0);
@@ -141,8 +124,9 @@ void daylight_sums(Daylight *out, const AirSource *source, const Weather *weathe
         out->thermal_scale[k] =
             planck_table_radiance(planck[k], out->weather.air_temp_k) / planck_table_radiance(planck[k], model_temp_k);
     const double zenith_rad = 0.5 * pi_rad - sun->elevation_rad, per_au2 = 1 / (sun->distance_au * sun->distance_au);
-    out->day_zenith_rad = fmin(zenith_rad, 85 * rad_per_deg);
-    out->scattered_scale = per_au2 * twilight(sun->elevation_rad);
+    out->day_zenith_rad = fmin(zenith_rad, (90 - twilight_begins_deg) * rad_per_deg);
+    twilight(out->scattered_scale, atmosphere, out->weather.visibility_m, sun->elevation_rad, bands);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) out->scattered_scale[b] *= per_au2;
     out->sun_above = per_au2 * disc_above(sun->elevation_rad);
 
     const double low_rad = fmin(zenith_rad, 0.5 * pi_rad);
@@ -153,7 +137,7 @@ void daylight_sums(Daylight *out, const AirSource *source, const Weather *weathe
         atmosphere_sun(&direct, atmosphere, out->weather.visibility_m, (AirBand)b, 0, low_rad);
         atmosphere_sun(&diffuse, atmosphere, out->weather.visibility_m, (AirBand)b, 0, out->day_zenith_rad);
         out->sun_w_m2[b] = direct.direct_normal_w_m2 * out->sun_above;
-        out->sky_w_m2[b] = diffuse_w_m2[b] = diffuse.diffuse_horizontal_w_m2 * out->scattered_scale;
+        out->sky_w_m2[b] = diffuse_w_m2[b] = diffuse.diffuse_horizontal_w_m2 * out->scattered_scale[b];
     }
     heat_of_clear_sky(out, source, low_rad, model_temp_k);
     const double above = out->sun_above;

@@ -166,12 +166,13 @@ void droplets_on_paths(AirPaths *const out[AIR_BAND_COUNT], const Air *air, cons
 void droplets_in_sky(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[2], const Daylight *light,
                      unsigned bands, double zenith_rad, const double *azimuth_rad, int azimuths)
 {
-    const double scale = light->scattered_scale * light->cloud_sky, up = cos(zenith_rad), z = light->day_zenith_rad;
+    const double up = cos(zenith_rad), z = light->day_zenith_rad;
     if (light->droplets.layers == 0) return;
     DropletRay ray = {.climb = fmax(up, 1e-6)};
     if (!ray_through(&ray, &light->droplets, INFINITY)) return;
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(bands >> b & 1)) continue;
+        const double scale = light->scattered_scale[b] * light->cloud_sky;
         if (b >= AIR_MWIR) {
             const PlanckTable *planck = b == AIR_MWIR ? light->planck_mwir : light->planck_lwir;
             const double       clear = light->thermal_scale[b - AIR_MWIR] * (1 - light->cloud_thermal),

@@ -187,7 +187,7 @@ static void sky_and_sun_of_six_atmospheres(void **state)
         keep(total, (sun.diffuse_horizontal_w_m2 - diffuse) / top, table.line[row + 1]);
     }
     judge(direct, "sun direct, of that above the air", 0.01, 0.015);
-    judge(total, "sun diffuse, of that above the air", 0.015, 0.02);
+    judge(total, "sun diffuse, of that above the air", 0.025, 0.03); /* the file has LOWTRAN7's two streams */
     table_close(&table);
 
     CHECK(open_reference(&table, "sky_longwave_irradiance"));

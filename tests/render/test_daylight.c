@@ -37,8 +37,8 @@ static void light_fades_smoothly(void **state)
         const double level = fmax(sun * sin(e * rad_per_deg), 0) + sky;
         CHECK(isfinite(sun) && sun >= 0 && sky > 0 && sky < 250);
         if (e < -0.27) CHECK(sun == 0);
-        /* half a degree: no jump, and more light for a higher sun; 10^(2.6 / 12) = 1.65 is nautical twilight's, the
-         * steepest, and as the disc rises it adds to civil twilight's 1.56 */
+        /* half a degree: no jump, and more light for a higher sun; the steepest, at -6.8 degrees, is 10^(0.5 * 0.499) =
+         * 1.78: (12.17 + 2 * 431.69 x - 3 * 1899.83 x^2) / 90 decades a degree at x = 6.8 / 90 */
         if (e > -30) CHECK(level >= 0.999 * last[0] && level <= last[0] * 1.8 + 1e-9);
         last[0] = level;
     }
@@ -48,21 +48,43 @@ static void light_fades_smoothly(void **state)
     CHECK(daylight_sky(&night.light, AIR_MWIR, (double[3]){0, 0, 1}) > 0.01);
 }
 
-/* Twilight as daylight_sums.c states it, over the sky with the sun 5 degrees up: 0.17 at the horizon (10^-0.77), 8e-4
- * (10^-3.1) at the end of civil, 10^-5.7 of nautical and 10^-6.5 of astronomical twilight, straight lines between, and
- * no less by night. The sun's own light comes with the share of its disc, 0.533 degrees wide, that is above the
- * horizon. */
-static void light_fades_by_its_twilight(void **state)
+/* Light of b, g and r as illuminance: 683 lm/W times the mean of V over each (CIE 1924: 0.0745, 0.790, 0.206). */
+static double illuminance_lx(const Daylight *light)
+{
+    static const double lm_w[3] = {683 * 0.0745, 683 * 0.790, 683 * 0.206};
+    double              sum = 0;
+    for (int b = 0; b < 3; b++)
+        sum += lm_w[b] * (light->sky_w_m2[AIR_B + b] + fmax(light->sun_d_enu[2], 0) * light->sun_w_m2[AIR_B + b]);
+    return sum;
+}
+
+/* Clear skies at 23 km against Janiczek & DeYoung (USNO Circular 171, 1987): 4480 lx with the sun 5 degrees up, 759 at
+ * the horizon, 405 at -1 degree, 79.1 at -3, 29.9 at -4, 3.41 at -6, 0.348 at -8, 0.116 at -9, 0.0171 at -11, 0.00805
+ * at -12, 0.00202 at -15, 0.00065 at -18 and by night, worked out from its coefficients: at -6, x = -6 / 90, 2.70
+ * + 12.17 x - 431.69 x^2 - 1899.83 x^3 = 0.533. The level at the horizon is LOWTRAN7's air by adding and doubling, not
+ * fitted to it. Light is blue: of equal energy b over g would be 1.02 in D65; twilight has 1.5 at the horizon and 2.0
+ * at -6 degrees, where ozone has taken a quarter of g. Night is as red as airglow is: r over g 1.14 per wavelength
+ * (Patat 2003: V 21.6, R 20.9), nir over g 7.2. The sun's own light comes with the share of its disc, 0.533 degrees
+ * wide, that is above the horizon. */
+static void light_fades_as_measured(void **state)
 {
     (void)state;
-    static const double of[][2] = {{5, 0},      {2.5, -0.385}, {0, -0.77},  {-3, -1.935},  {-6, -3.1}, {-9, -4.4},
-                                   {-12, -5.7}, {-15, -6.1},   {-18, -6.5}, {-18.5, -6.5}, {-40, -6.5}};
-    const Weather       weather = weather_default();
-    const Daylight      five = air_of(&weather, 5, 2, 1 << AIR_PAN, NULL).light;
+    static const double of[][2] = {{5, 4480},      {0, 759},       {-1, 405},     {-3, 79.1},    {-4, 29.9},
+                                   {-6, 3.41},     {-8, 0.348},    {-9, 0.116},   {-11, 0.0171}, {-12, 0.00805},
+                                   {-15, 0.00202}, {-18, 0.00065}, {-40, 0.00065}};
+    const Weather       weather = us1976_weather();
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-        const Daylight light = air_of(&weather, of[i][0], 2, 1 << AIR_PAN, NULL).light;
-        CHECK_NEAR(log10(light.sky_w_m2[AIR_PAN] / five.sky_w_m2[AIR_PAN]), of[i][1], 1e-5);
-        CHECK_NEAR(log10(light.solar_diffuse_w_m2 / five.solar_diffuse_w_m2), of[i][1], 1e-9);
+        const Daylight light = air_of(&weather, of[i][0], 2, 0xf | 1 << AIR_NIR, NULL).light;
+        CHECK_NEAR(illuminance_lx(&light) / of[i][1], 1, of[i][0] > 0 ? 0.05 : 0.015);
+        CHECK_NEAR(light.sky_w_m2[AIR_B] + light.sky_w_m2[AIR_G] + light.sky_w_m2[AIR_R], light.sky_w_m2[AIR_PAN],
+                   1e-5 * light.sky_w_m2[AIR_PAN]);
+        const double blue = light.sky_w_m2[AIR_B] / light.sky_w_m2[AIR_G],
+                     red = light.sky_w_m2[AIR_R] / light.sky_w_m2[AIR_G];
+        if (of[i][0] == 0) CHECK(blue > 1.4 && blue < 1.65 && red < 0.85);
+        if (of[i][0] <= -4 && of[i][0] >= -12) CHECK(blue > 1.9 && blue < 2.2 && red < 0.9);
+        if (of[i][0] <= -18) CHECK_NEAR(blue, 0.69, 0.03);
+        if (of[i][0] <= -18) CHECK_NEAR(red, 1.14, 0.04);
+        if (of[i][0] <= -18) CHECK_NEAR(light.sky_w_m2[AIR_NIR] / light.sky_w_m2[AIR_G], 4 * 1.79, 0.3);
     }
     const SolarAir air = {weather.visibility_m, solar_water_mm(weather_vapour_kg_m3(&weather)), 0};
     SunAir         level, solar;
@@ -208,7 +230,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sun_disc_adds_up),
         cmocka_unit_test(light_fades_smoothly),
-        cmocka_unit_test(light_fades_by_its_twilight),
+        cmocka_unit_test(light_fades_as_measured),
         cmocka_unit_test(heat_of_a_clear_sky_is_as_on_paper),
         cmocka_unit_test(sunlight_of_all_wavelengths),
         cmocka_unit_test(clouds_dim_the_sun_and_warm_the_sky),

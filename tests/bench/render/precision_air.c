@@ -374,6 +374,42 @@ static void tunable_planes(Bench *bench, const AirSet *from)
                   work, point, settings);
 }
 
+/* ---- the sun and the sky by band ----------------------------------------------------------------- */
+
+/* All light on level ground at 23 km, W/m2, by SPECTRL2 (pvlib 0.16.1) with LOWTRAN7's haze, water and ozone
+ * (tests/system/sunlight_judge.py): the sun 60, 40, 25, 18, 8 degrees up. Its scattered light of b and g is less than
+ * that of discrete ordinates (tests/render/test_solar.c), the more the lower the sun. */
+static void row_bands(Bench *bench, const Atmosphere *atmosphere)
+{
+    enum { suns = 5, shown = 4 };
+    static const double up_deg[suns] = {60, 40, 25, 18, 8};
+    static const struct {
+        AirBand band;
+        double  limit[2], level_w_m2[suns];
+    } of[shown] = {{AIR_B, {10.5, 14.5}, {132.71, 89.63, 49.41, 31.05, 10.46}},
+                   {AIR_G, {4, 14.5}, {140.92, 97.28, 55.09, 34.65, 9.79}},
+                   {AIR_R, {4, 8}, {123.22, 86.52, 50.59, 32.71, 9.52}},
+                   {AIR_NIR, {4, 8}, {286.97, 204.00, 122.87, 82.08, 26.47}}};
+    for (int k = 0; k < shown; k++)
+        for (int low = 0; low < 2; low++) {
+            char   what[64];
+            double worst = 0;
+            for (int i = low ? suns - 1 : 0; i < (low ? suns : suns - 1); i++) {
+                SunAir sun;
+                atmosphere_sun(&sun, atmosphere, 23000, of[k].band, 0, (90 - up_deg[i]) * rad_per_deg);
+                const double level =
+                    sun.direct_normal_w_m2 * sin(up_deg[i] * rad_per_deg) + sun.diffuse_horizontal_w_m2;
+                bench_worst(&worst, 100 * fabs(level / of[k].level_w_m2[i] - 1));
+            }
+            snprintf(what, sizeof what, "daylight, %s, sun %s", air_band_name(of[k].band),
+                     low ? "8 degrees up" : "from 18 degrees");
+            BenchRow row = bench_row(what);
+            row.error = worst, row.error_limit = of[k].limit[low], row.error_unit = "%";
+            row.against = "largest, all light on level ground at 23 km, SPECTRL2 (pvlib)";
+            bench_add(bench, &row);
+        }
+}
+
 /* ---- the suite ------------------------------------------------------------------------------------ */
 
 Status bench_precision_air(Bench *bench)
@@ -409,6 +445,7 @@ Status bench_precision_air(Bench *bench)
     if (status == STATUS_OK) {
         tunable_sky(bench, &frame[AIR_TABLED].set[0]);
         tunable_planes(bench, &frame[AIR_TABLED].set[0]);
+        row_bands(bench, atmosphere);
     } else {
         log_error("bench: precision: air: %s", status_name(status));
     }
