@@ -271,6 +271,11 @@ static void points_lie_on_the_brick(bool of_body)
         CHECK_NEAR(e->spot.factor[spot][AIR_R], 1 + (double)change.w_m2[AIR_R] / open_w_m2[0], 0.02);
         CHECK_NEAR(e->spot.factor[spot][AIR_LWIR], 1 + (double)change.w_m2[AIR_LWIR] / open_w_m2[1], 0.02);
         CHECK(e->spot.factor[spot][AIR_G] == 1);
+        const double least = fmax(0.5 * (1 - n_enu[2]), 1.0 / 16); /* hemisphere_below */
+        CHECK_NEAR(e->spot.below[spot][AIR_R],
+                   1 + (double)change.below_w_m2[AIR_R] / (least * 0.2 * (300 * 0.64 + 20 * pi_rad)), 0.02);
+        CHECK_NEAR(e->spot.below[spot][AIR_LWIR], 1 + (double)change.below_w_m2[AIR_LWIR] / (least * pi_rad * 15),
+                   0.02);
     }
     CHECK(met > 40 && (covered > 0) == before);
 }

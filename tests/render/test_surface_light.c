@@ -254,6 +254,18 @@ static void planck_of_eight(void **state)
     }
 }
 
+/* Light from above over the open sky's on the same plane; of a plane that sees less than 1/16 of 160 W/m2, as if it saw
+ * 10: half of 5 lost is a quarter. */
+static void sky_in_a_mirror(void **state)
+{
+    (void)state;
+    CHECK_NEAR(mirror_sky_factor(30, 120, 160), 0.25, 1e-15);
+    CHECK_NEAR(mirror_sky_factor(2.5, 5, 160), 0.75, 1e-15);
+    CHECK_NEAR(mirror_sky_factor(12.5, 10, 160), 1.25, 1e-15);
+    CHECK(mirror_sky_factor(0, 0, 160) == 1 && mirror_sky_factor(0, 0, 0) == 1);
+    CHECK(mirror_sky_factor(-40, 20, 160) == 0 && mirror_sky_factor(1e6, 20, 160) == 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -261,6 +273,7 @@ int main(void)
         cmocka_unit_test(materials_agree_with_the_plain_form),
         cmocka_unit_test(company_changes_no_bit),
         cmocka_unit_test(planck_of_eight),
+        cmocka_unit_test(sky_in_a_mirror),
     };
     return cmocka_run_group_tests(tests, open_world, hand_close);
 }

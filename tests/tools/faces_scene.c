@@ -1,13 +1,13 @@
-/* faces_scene OUT INFRARED MODEL VISIBILITY_KM SUN_DEG LIFT_M GROUND PAINT: a painted box of 4 x 2 x 1.5 m over flat diffuse
- * ground under the sun and the sky of an atmosphere, seen by Pitviper without air before it, with everything that
- * another renderer needs to see the same: tests/system/faces_judge.py.
+/* faces_scene OUT INFRARED MODEL VISIBILITY_KM SUN_DEG LIFT_M GROUND PAINT: a painted box of 4 x 2 x 1.5 m over flat
+ * diffuse ground under the sun and the sky of an atmosphere, seen by Pitviper without air before it, with everything
+ * that another renderer needs to see the same: tests/system/faces_judge.py.
  *
- * INFRARED: nir or swir, beside red, green, blue. LIFT_M: of the box over the ground. GROUND: a material. PAINT: glossy or matt. Files of OUT, float32:
- *     sky    [channels][sky_rows][sky_columns]: radiance that lights the scene, rows from the zenith to the nadir,
- * nodes at both; columns clockwise from north, at their middles; below the horizontal the horizontal's view0, view1
- * from the sun's side and from the other: [channels][height][width] with contact shadows, the same by hemisphere
- * sampling, then normals [3], entity, places [3] and scene.txt: names and numbers of the light, the surfaces and the
- * cameras. */
+ * INFRARED: nir or swir, beside red, green, blue. LIFT_M: of the box over the ground. GROUND: a material. PAINT: glossy
+ * or matt. Files of OUT, float32: sky    [channels][sky_rows][sky_columns]: radiance that lights the scene, rows from
+ * the zenith to the nadir, nodes at both; columns clockwise from north, at their middles; below the horizontal the
+ * horizontal's view0, view1 from the sun's side and from the other: [channels][height][width] with contact shadows, the
+ * same by hemisphere sampling, then normals [3], entity, places [3] and scene.txt: names and numbers of the light, the
+ * surfaces and the cameras. */
 #include "render/air/air_private.h"
 #include "tests/scenes/stress_world.h"
 
@@ -16,11 +16,11 @@
 
 enum { sky_columns = 1024, sky_rows = 513, width = 160, height = 108, exact_samples = 256, channels = 4 };
 
-static const AirBand     channel[channels] = {AIR_R, AIR_G, AIR_B, AIR_NIR};
-static const char *name[channels] = {"red", "green", "blue", "nir"};
-static double            ground_rho[channels], box_rho[channels], box_gloss[2]; /* share and roughness */
-static const double      sun_turn_rad = 2.2;                           /* of the sun's azimuth, clockwise from north */
-static const double      face_turn_rad = 25 * 0.017453292519943295769; /* of a lit face's normal from it */
+static const AirBand channel[channels] = {AIR_R, AIR_G, AIR_B, AIR_NIR};
+static const char   *name[channels] = {"red", "green", "blue", "nir"};
+static double        ground_rho[channels], box_rho[channels], box_gloss[2]; /* share and roughness */
+static const double  sun_turn_rad = 2.2;                           /* of the sun's azimuth, clockwise from north */
+static const double  face_turn_rad = 25 * 0.017453292519943295769; /* of a lit face's normal from it */
 
 static FILE *open_file(const char *folder, const char *file_name)
 {
@@ -57,8 +57,8 @@ static void write_scene(const char *folder, const Daylight *light, const View vi
             sky_columns, sky_rows, width, height, light->sun_d_enu[0], light->sun_d_enu[1], light->sun_d_enu[2],
             heading, lift_m, box_gloss[0], box_gloss[1]);
     for (int c = 0; c < channels; c++)
-        fprintf(file, "channel %s sun %.9g sky %.9g ground %.9g box %.9g\n", name[c],
-                light->sun_w_m2[channel[c]], light->sky_w_m2[channel[c]], ground_rho[c], box_rho[c]);
+        fprintf(file, "channel %s sun %.9g sky %.9g ground %.9g box %.9g\n", name[c], light->sun_w_m2[channel[c]],
+                light->sky_w_m2[channel[c]], ground_rho[c], box_rho[c]);
     for (int v = 0; v < 2; v++) {
         fprintf(file, "view%d %.17g", v, view[v].focal_px);
         for (int k = 0; k < 3; k++) fprintf(file, " %.17g", view[v].p_enu[k] - (k == 2 ? ground_m : 0));
@@ -124,7 +124,9 @@ int main(int argc, char **argv)
     double      visibility_km, sun_rad, lift_m;
     if (argc != 9 || !text_to_double(&visibility_km, argv[4]) || !text_to_double(&sun_rad, argv[5]) ||
         !text_to_double(&lift_m, argv[6]))
-        return fprintf(stderr, "usage: faces_scene OUT nir|swir MODEL VISIBILITY_KM SUN_DEG LIFT_M GROUND glossy|matt\n"), 2;
+        return fprintf(stderr,
+                       "usage: faces_scene OUT nir|swir MODEL VISIBILITY_KM SUN_DEG LIFT_M GROUND glossy|matt\n"),
+               2;
     sun_rad *= rad_per_deg;
     name[channels - 1] = argv[2];
     Status                 status = channels_load();
