@@ -16,9 +16,9 @@ void air_above_fill(Air *air)
     memset(air->above_w_m2_sr, 0, sizeof air->above_w_m2_sr);
     if (!(eye_m > air_top_m)) return;
     for (int i = 0; i <= air_above_steps; i++) {
-        const double share = fmin(least + (1 - least) * i / air_above_steps, 1 - 1e-9), range_m = share * edge_m;
-        const double up = -(edge_m * edge_m / range_m + range_m) / (2 * (earth_radius_m + eye_m));
-        const double entry_m = air_entry_m(eye_m, fmax(up, -1));
+        const double  share = fmin(least + (1 - least) * i / air_above_steps, 1 - 1e-9), range_m = share * edge_m;
+        const double  up = -(edge_m * edge_m / range_m + range_m) / (2 * (earth_radius_m + eye_m));
+        const double  entry_m = air_entry_m(eye_m, fmax(up, -1));
         const AirPath whole = {.observer_m = eye_m, .range_m = range_m},
                       tabled = {.observer_m = air_top_m, .range_m = range_m - entry_m};
         DayPath far, near;
@@ -61,7 +61,8 @@ static void shift_rows(AirLimb *limb, const AirSky *sky, const double more_w_m2_
         const float *ring = &sky->around_sun[place[a].angle];
         const double around = (double)(ring[0] + place[a].angle_share * (ring[1] - ring[0]));
         for (int i = 3 * limb->steps / 4; i <= limb->steps; i++) {
-            const double now = (double)limb->scattered_w_m2_sr[i][a] + share_at(i, limb->steps) * more_w_m2_sr[a] / around;
+            const double now =
+                (double)limb->scattered_w_m2_sr[i][a] + share_at(i, limb->steps) * more_w_m2_sr[a] / around;
             limb->scattered_w_m2_sr[i][a] = (float)fmax(now, -(double)limb->thermal_w_m2_sr[i] / around);
         }
     }

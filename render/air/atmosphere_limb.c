@@ -1,5 +1,5 @@
-/* render/air/atmosphere_limb.c: what the air of paths that go down from an eye sends: the air above the tables' top, and
- * the model's factors on what its tables of flat layers make of them (limb.csv). */
+/* render/air/atmosphere_limb.c: what the air of paths that go down from an eye sends: the air above the tables' top,
+ * and the model's factors on what its tables of flat layers make of them (limb.csv). */
 #include "render/air/atmosphere_private.h"
 
 Status limb_open(Atmosphere *atmosphere, const char *folder)
@@ -37,7 +37,8 @@ void air_limb_factors(double out[2], const Atmosphere *atmosphere, const Blend *
     }
     const double at[3] = {visibility_at(limb, blend), observer_m, place};
     grid_at(factor, limb, at);
-    for (int k = 0; k < 2; k++) out[k] = mixed(1, factor[k], range_m < whole_m ? range_m / whole_m : 1);
+    const double way = range_m < whole_m ? range_m / whole_m : 1;
+    for (int k = 0; k < 2; k++) out[k] = mixed(1, factor[k], way * way);
 }
 
 double air_sky_thermal(const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,

@@ -290,7 +290,8 @@ double air_ray_up(const AirPath *path);
 Status limb_open(Atmosphere *atmosphere, const char *folder);
 /* Factors on the thermal radiance that paths and skies of flat layers have in mwir and lwir, by the observer's height,
  * the cosine of the zenith angle there and the range (INFINITY: to space): 1 of a path that does not go down; of one
- * that ends before its lowest point, or the ground, the share that its range has of the way there. */
+ * that ends before its lowest point, or the ground, the square of the share that its range has
+ * of the way there. */
 void air_limb_factors(double out[2], const Atmosphere *atmosphere, const Blend *blend, double observer_m, double up,
                       double range_m);
 /* Thermal radiance of the sky, from the horizontal up. */
