@@ -119,7 +119,9 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     daylight_end(job.light);
     if (on_ground) memcpy(out->sky_eye, out->light.sky, sizeof out->sky_eye);
     for (int b = 0; b < AIR_BAND_COUNT && on_ground; b++) level_limb(&out->limb[b], &out->sky_eye[b]);
-    return STATUS_OK;
+    if (on_ground) return STATUS_OK;
+    air_above_fill(out);
+    return air_edge_meet(out, &input, arena);
 }
 
 void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],

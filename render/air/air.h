@@ -188,17 +188,21 @@ double daylight_sun_disc(const Daylight *light, const double d_enu[3]);
 
 typedef struct AirTable AirTable; /* paths from this eye */
 
+enum { air_above_steps = 16 };
+
 typedef struct Air {
     Daylight light;
     AirSky   sky_eye[AIR_BAND_COUNT];      /* from the eye, down to the horizontal */
     AirLimb  limb[AIR_BAND_COUNT];         /* below it, of an eye of ten metres and more */
     double   sun_eye_w_m2[AIR_BAND_COUNT]; /* direct irradiance at the eye: gives the radiance of the sun's visible
                                             * disc */
-    double                  eye_height_m;  /* above the model's 0 km; any */
-    AirTable               *table;         /* in the arena of air_at; NULL: homogeneous atmosphere, see air_even */
-    const struct HeatScene *heat;          /* of the ground (render/heat/heat.h); NULL: all of it as warm as the air */
-    double                  even_per_m;    /* extinction of a homogeneous atmosphere, whose radiance is that of its
-                                            * sky */
+    float above_w_m2_sr[2][air_above_steps + 1]; /* of mwir, lwir: what the air above the tables' top adds to a path
+                                                  * from an eye there; by the way's share of that to the edge */
+    double                  eye_height_m;        /* above the model's 0 km; any */
+    AirTable               *table;      /* in the arena of air_at; NULL: homogeneous atmosphere, see air_even */
+    const struct HeatScene *heat;       /* of the ground (render/heat/heat.h); NULL: all of it as warm as the air */
+    double                  even_per_m; /* extinction of a homogeneous atmosphere, whose radiance is that of its
+                                         * sky */
 } Air;
 
 /* Parameters of an eye. */

@@ -341,8 +341,19 @@ static double limb_there(const Air *air, int b, const SkyPlace *p, double climb)
                     (l + t * (h - l)) * (ring[0] + p->angle_share * (ring[1] - ring[0])));
 }
 
-static void smoke_bands(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays,
-                        const float *temp_k)
+/* What the air above the tables' top adds to paths that end below it. */
+static void add_above(AirPaths *out, const Air *air, int thermal, const Hits *hits, const Rays *rays)
+{
+    for (int i = 0; i < hits->count; i++) {
+        const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
+        const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+        if (out->range_m[i] < INFINITY && out->air_transmittance[i] < 1)
+            out->added_w_m2_sr[i] += (float)air_above_there(air, thermal, air_climb(o_enu, d_enu));
+    }
+}
+
+void air_paths_clear(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays,
+                     const float *temp_k)
 {
     if (!air->table) {
         for (int b = 0; b < AIR_BAND_COUNT; b++)
@@ -359,6 +370,8 @@ static void smoke_bands(AirPaths *const out[AIR_BAND_COUNT], const Air *air, con
 
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (out[b]) memcpy(out[b]->range_m, range_m, (size_t)hits->count * sizeof *range_m);
+    for (int k = 0; k < 2 && air->eye_height_m > air_top_m; k++)
+        if (out[AIR_MWIR + k]) add_above(out[AIR_MWIR + k], air, k, hits, rays);
     for (int i = 0; i < hits->count; i++) {
         if (range_m[i] < INFINITY) continue;
         const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
@@ -380,7 +393,7 @@ void air_paths_of(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, 
 {
     AirPaths *wanted[AIR_BAND_COUNT];
     for (int b = 0; b < AIR_BAND_COUNT; b++) wanted[b] = bands >> b & 1 ? &out[b] : NULL;
-    smoke_bands(wanted, air, hits, rays, temp_k);
+    air_paths_clear(wanted, air, hits, rays, temp_k);
     droplets_on_paths(wanted, air, hits, rays);
 }
 
@@ -388,6 +401,6 @@ void air_path(AirPaths *out, const Air *air, AirBand band, const Hits *hits, con
 {
     AirPaths *wanted[AIR_BAND_COUNT] = {NULL};
     wanted[band] = out;
-    smoke_bands(wanted, air, hits, rays, temp_k);
+    air_paths_clear(wanted, air, hits, rays, temp_k);
     droplets_on_paths(wanted, air, hits, rays);
 }

@@ -112,6 +112,13 @@ struct AirTable {
     AirHeat  *heat; /* NULL: no thermal band */
 };
 
+/* Paths by the tables, without rain, snow and fog; of hits count and range_m alone. */
+void air_paths_clear(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays,
+                     const float *temp_k);
+/* Of an eye above the tables' top: fills in above_w_m2_sr; thermal radiance to add to a path by its rate of climb, of
+ * mwir (thermal 0) and lwir. */
+void   air_above_fill(Air *air);
+double air_above_there(const Air *air, int thermal, double climb);
 /* Adds rain, snow and fog to paths by tables or without: droplets_paths.c. */
 void droplets_on_paths(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays);
 /* To a row of the sky over the ground, as air_day_sky gives it; thermal: mwir, lwir. */
@@ -163,6 +170,10 @@ typedef struct TableInput {
     double   azimuth_low_rad, azimuth_high_rad, slope_low, slope_high, height_high_m; /* slopes as rise over range */
     unsigned bands;
 } TableInput;
+
+/* The tables of paths and of the sky below the horizontal meet at the Earth's edge, where each has its own error of
+ * interpolation: the lowest quarter of the sky's rows takes over that of the paths. STATUS_NO_MEMORY. */
+Status air_edge_meet(Air *air, const TableInput *in, Arena *arena);
 
 /* First every evaluation of the atmosphere, in any order and by any thread, then every interpolation. */
 typedef struct TableJob TableJob;

@@ -200,17 +200,22 @@ double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band
     return look_depth(&look, temp_k);
 }
 
+/* Of the tables of paths. */
+static double top_of(const Atmosphere *atmosphere)
+{
+    const PathTable *table = &atmosphere->clear_path[AIR_B];
+    return fmin(table->axis[0][table->nodes[0] - 1], table->axis[1][table->nodes[1] - 1]);
+}
+
 /* The legs of a path, of which heights and range are made possible. */
 static AirLegs legs_of(const Atmosphere *atmosphere, const AirPath *path)
 {
-    const PathTable *table = &atmosphere->clear_path[AIR_B];
-    const double     top_m = fmin(table->axis[0][table->nodes[0] - 1], table->axis[1][table->nodes[1] - 1]);
-    AirPath          p = *path;
+    AirPath p = *path;
     p.observer_m = fmax(p.observer_m, 0);
     p.target_m = fmax(p.target_m, 0);
     p.range_m = fmax(p.range_m, fabs(p.target_m - p.observer_m));
     p.rel_azimuth_rad = fabs(remainder(p.rel_azimuth_rad, 2 * pi_rad));
-    return air_legs(&p, top_m);
+    return air_legs(&p, top_of(atmosphere));
 }
 
 double scattered_value(const PathTable *table, const Stencil *at, double sun_x, double azimuth_deg, int tabled)
@@ -268,39 +273,31 @@ static PathDepths single_depths(const Atmosphere *atmosphere, const Blend *blend
     return out;
 }
 
-/* Of a leg in pieces each sends as a black body of its own mean temperature what the air before it leaves of its share
- * of the leg's depth; and scatters as if it were alone. */
+/* A leg in pieces scatters as each of them if it were alone. */
 static PathDepths leg_depths(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *leg,
                              double temp_k)
 {
-    AirPath    piece[air_pieces_max], before = *leg;
+    AirPath    piece[air_pieces_max];
     const int  pieces = air_leg_pieces(piece, leg);
     PathDepths out = single_depths(atmosphere, blend, band, leg, temp_k);
-    const bool lit = leg->sun_zenith_rad <= pi_rad / 2;
-    double     near = 0, sum = 0, left = 1, scatters = 0;
-    before.range_m = 0;
-    for (int i = 0; i < pieces; i++) {
-        const PathDepths own = single_depths(atmosphere, blend, band, &piece[i], temp_k);
-        before.range_m += piece[i].range_m, before.target_m = piece[i].target_m;
-        if (lit) scatters += left * scattered(atmosphere, blend, band, &piece[i], own.sun);
-        left *= exp(-own.sun);
-        const double depth =
-            fmax(near, i + 1 < pieces ? single_depths(atmosphere, blend, band, &before, temp_k).own : out.own);
-        if (own.own > 0) sum += own.thermal_w_m2_sr / -expm1(-own.own) * exp(-near) * -expm1(near - depth);
-        near = depth;
-    }
-    out.scattered_w_m2_sr = scatters;
+    double     left = 1, scatters = 0;
+    if (leg->sun_zenith_rad > pi_rad / 2) return out;
+    out.scattered_w_m2_sr = scattered(atmosphere, blend, band, leg, out.sun);
     if (pieces == 1) return out;
-    const double share = air_pieces_share(leg), whole = lit ? scattered(atmosphere, blend, band, leg, out.sun) : 0;
-    out.thermal_w_m2_sr = mixed(out.thermal_w_m2_sr, sum, share);
-    out.scattered_w_m2_sr = mixed(whole, scatters, share);
+    for (int i = 0; i < pieces; i++) {
+        const double depth = single_depths(atmosphere, blend, band, &piece[i], temp_k).sun;
+        scatters += left * scattered(atmosphere, blend, band, &piece[i], depth);
+        left *= exp(-depth);
+    }
+    out.scattered_w_m2_sr = mixed(out.scattered_w_m2_sr, scatters, air_pieces_share(leg));
     return out;
 }
 
 static void tabled_path(PathAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
-                        const AirLegs *legs, double temp_k)
+                        const AirPath *path, double temp_k)
 {
-    PathDepths way = {0};
+    const AirLegs legs_are = legs_of(atmosphere, path), *legs = &legs_are;
+    PathDepths    way = {0};
     if (legs->count > 0) way = leg_depths(atmosphere, blend, band, &legs->leg[0], temp_k);
     if (legs->count > 1) {
         const PathDepths behind = leg_depths(atmosphere, blend, band, &legs->leg[1], temp_k);
@@ -317,6 +314,13 @@ static void tabled_path(PathAir *out, const Atmosphere *atmosphere, const Blend 
             way.emitted = mixed(whole.emitted, way.emitted, legs->cut);
         }
     }
+    if (air_band_is_thermal(band) && legs->count > 0) {
+        const double eye_m = fmax(path->observer_m, 0), up = air_ray_up(path);
+        way.thermal_w_m2_sr += air_above_top(atmosphere, blend, band, eye_m, up, top_of(atmosphere));
+        double factor[2];
+        air_limb_factors(factor, atmosphere, blend, eye_m, up, path->range_m);
+        way.thermal_w_m2_sr *= factor[band == AIR_LWIR];
+    }
     *out = (PathAir){exp(-way.emitted), exp(-way.sun), way.thermal_w_m2_sr, way.scattered_w_m2_sr};
 }
 
@@ -325,16 +329,15 @@ void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibili
 {
     Blend blend;
     blend_at(&blend, atmosphere, visibility_m);
-    const AirLegs legs = legs_of(atmosphere, path);
     if (band != AIR_PAN) {
-        tabled_path(out, atmosphere, &blend, band, &legs, temp_k);
+        tabled_path(out, atmosphere, &blend, band, path, temp_k);
         return;
     }
     *out = (PathAir){0};
     const double *top = atmosphere->sun_top_w_m2;
     for (AirBand part = AIR_B; part <= AIR_R; part++) {
         PathAir one;
-        tabled_path(&one, atmosphere, &blend, part, &legs, temp_k);
+        tabled_path(&one, atmosphere, &blend, part, path, temp_k);
         out->sun_transmittance += top[part] / top[AIR_PAN] * one.sun_transmittance;
         out->scattered_w_m2_sr += one.scattered_w_m2_sr;
     }
@@ -414,13 +417,8 @@ static SkyAir sky_above(const Atmosphere *atmosphere, const Blend *blend, AirBan
 {
     SkyAir       out = {0};
     const double at[4] = {observer_m, slant_x(angle_rad[0]), slant_x(angle_rad[1]), angle_rad[2] / rad_per_deg};
-    if (air_band_is_thermal(band)) {
-        double low[2], high[2];
-        grid_at(low, &blend->low->sky_thermal, at);
-        grid_at(high, &blend->high->sky_thermal, at);
-        const int i = band == AIR_LWIR;
-        out.thermal_w_m2_sr = exp(blend_of(blend, low[i], high[i])) * black_air(atmosphere, band, observer_m);
-    }
+    if (air_band_is_thermal(band))
+        out.thermal_w_m2_sr = air_sky_thermal(atmosphere, blend, band, observer_m, angle_rad[0]);
     if (angle_rad[1] <= pi_rad / 2) out.scattered_w_m2_sr = sky_scattered(atmosphere, blend, band, at, angle_rad);
     return out;
 }
@@ -444,8 +442,14 @@ void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility
         const SkyAir sky = sky_above(atmosphere, &blend, part, tangent_m, angle_rad);
         PathDepths   way = {0};
         if (legs.count > 0) way = leg_depths(atmosphere, &blend, part, &legs.leg[0], NAN);
-        out->thermal_w_m2_sr +=
-            way.thermal_w_m2_sr + sky.thermal_w_m2_sr * air_legs_sky_passed(part, tangent_m, way.own);
+        double thermal = way.thermal_w_m2_sr + sky.thermal_w_m2_sr * air_legs_sky_passed(part, tangent_m, way.own);
+        if (below && air_band_is_thermal(part)) {
+            thermal += air_above_top(atmosphere, &blend, part, eye_m, up, top_of(atmosphere));
+            double factor[2];
+            air_limb_factors(factor, atmosphere, &blend, eye_m, up, INFINITY);
+            thermal *= factor[part == AIR_LWIR];
+        }
+        out->thermal_w_m2_sr += thermal;
         out->scattered_w_m2_sr += way.scattered_w_m2_sr + sky.scattered_w_m2_sr * exp(-way.sun);
     }
 }

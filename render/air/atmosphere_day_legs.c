@@ -41,31 +41,18 @@ static void add_leg(DayPath *to, const DayPath *behind, const AirDay *day, doubl
     }
 }
 
-static const unsigned thermal = 1 << AIR_MWIR | 1 << AIR_LWIR;
-
-/* Of a leg in pieces each sends as a black body of its own mean temperature what the air before it leaves of its share
- * of the leg's depth. */
-static void leg_path(DayPath *out, const AirDay *day, const AirPath *leg)
+/* On the way down from an eye: the air above the tables' top, and the model's factor. */
+static void finish_down(double thermal_w_m2_sr[2], const AirDay *day, double eye_m, double up, double range_m)
 {
-    AirPath   piece[air_pieces_max], before = *leg;
-    const int pieces = air_leg_pieces(piece, leg);
-    day_leg_path(out, day, ~0u, leg);
-    if (pieces == 1 || !(day->parts & thermal)) return;
-    double sum[2] = {0}, near[2] = {0}; /* depths at the near end of a piece */
-    before.range_m = 0;
-    for (int i = 0; i < pieces; i++) {
-        DayPath own, far;
-        before.range_m += piece[i].range_m, before.target_m = piece[i].target_m;
-        day_leg_path(&own, day, thermal, &piece[i]);
-        if (i + 1 < pieces) day_leg_path(&far, day, thermal, &before);
-        for (int k = 0; k < 2; k++) {
-            const double depth = fmax(near[k], i + 1 < pieces ? far.own[k] : out->own[k]);
-            if (own.own[k] > 0)
-                sum[k] += own.thermal_w_m2_sr[k] / -expm1(-own.own[k]) * exp(-near[k]) * -expm1(near[k] - depth);
-            near[k] = depth;
-        }
+    double factor[2];
+    if (!(up < 0) || !(day->parts & (1 << AIR_MWIR | 1 << AIR_LWIR))) return;
+    air_limb_factors(factor, day->atmosphere, &day->blend, eye_m, up, range_m);
+    for (int k = 0; k < 2; k++) {
+        const AirBand band = (AirBand)(AIR_MWIR + k);
+        if (wants(day->parts, band))
+            thermal_w_m2_sr[k] += air_above_top(day->atmosphere, &day->blend, band, eye_m, up, day->top_m);
+        thermal_w_m2_sr[k] *= factor[k];
     }
-    for (int k = 0; k < 2; k++) out->thermal_w_m2_sr[k] = mixed(out->thermal_w_m2_sr[k], sum[k], air_pieces_share(leg));
 }
 
 /* The path without a cut, for the share that it has. */
@@ -84,13 +71,15 @@ void air_day_path(DayPath *out, const AirDay *day, const AirPath *path)
 {
     const AirLegs legs = legs_of(day, path);
     *out = (DayPath){0};
-    if (legs.count > 0) leg_path(out, day, &legs.leg[0]);
+    if (legs.count > 0) day_leg_path(out, day, ~0u, &legs.leg[0]);
     if (legs.count > 1) {
         DayPath other;
-        leg_path(&other, day, &legs.leg[1]);
+        day_leg_path(&other, day, ~0u, &legs.leg[1]);
         add_leg(out, &other, day, legs.leg[0].target_m);
-        if (legs.cut < 1) leg_path(&other, day, &legs.whole), mix_path(out, &other, legs.cut);
+        if (legs.cut < 1) day_leg_path(&other, day, ~0u, &legs.whole), mix_path(out, &other, legs.cut);
     }
+    if (legs.count > 0)
+        finish_down(out->thermal_w_m2_sr, day, fmax(path->observer_m, 0), air_ray_up(path), path->range_m);
     if (wants(day->bands, AIR_PAN)) pan_of(out->sun, day);
 }
 
@@ -159,13 +148,17 @@ static void sky_below(double (*w_m2_sr)[AIR_BAND_COUNT], double thermal_w_m2_sr[
     const AirLegs legs = legs_of(day, &path);
     const double  tangent_m = path.target_m;
     day_sky_above(w_m2_sr, thermal_w_m2_sr, day, tangent_m, 0.5 * pi_rad, azimuth_rad, azimuths);
-    if (legs.count == 0) return;
+    if (legs.count == 0) {
+        finish_down(thermal_w_m2_sr, day, observer_m, up, INFINITY);
+        return;
+    }
     double  before[path_max_suns][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
     DayPath way;
-    leg_path(&way, day, &legs.leg[0]);
+    day_leg_path(&way, day, ~0u, &legs.leg[0]);
     for (int k = 0; k < 2; k++)
         thermal_w_m2_sr[k] = way.thermal_w_m2_sr[k] +
                              thermal_w_m2_sr[k] * air_legs_sky_passed((AirBand)(AIR_MWIR + k), tangent_m, way.own[k]);
+    finish_down(thermal_w_m2_sr, day, observer_m, up, INFINITY);
     leg_scattered(before, sun, day, &legs.leg[0], azimuth_rad, azimuths);
     add_behind(before, w_m2_sr, day, sun, azimuths);
     memcpy(w_m2_sr, before, (size_t)azimuths * sizeof *w_m2_sr);

@@ -23,6 +23,11 @@ static Ray ray_between(double a_m, double b_m, double range_m)
     return (Ray){a_m, clamp(up, -1, 1)};
 }
 
+double air_ray_up(const AirPath *path)
+{
+    return path->range_m > 0 ? ray_between(path->observer_m, path->target_m, path->range_m).up : 0;
+}
+
 double air_pieces_share(const AirPath *leg)
 {
     return clamp(leg->range_m / longest_piece_m - 1, 0, 1) * clamp(leg->observer_m / least_height_m - 1, 0, 1);

@@ -129,6 +129,7 @@ static Status open_model(Atmosphere *atmosphere, const char *folder, double visi
         status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK) status = clear_open(atmosphere, folder);
+    if (status == STATUS_OK && folder_has(folder, "limb.csv")) status = limb_open(atmosphere, folder);
     if (status == STATUS_OK) status = open_ground(atmosphere, folder);
     if (status == STATUS_OK) status = open_slices(atmosphere, folder, &list, visibility_m);
     grid_close(&list);
@@ -237,6 +238,7 @@ void atmosphere_close(Atmosphere *atmosphere)
         if (atmosphere->planck[i]) planck_table_destroy(atmosphere->planck[i]);
     grid_close(&atmosphere->temperature);
     grid_close(&atmosphere->phase);
+    grid_close(&atmosphere->limb);
     grid_close(&atmosphere->solar);
     atmosphere_vapour_close(atmosphere);
     free(atmosphere);

@@ -129,6 +129,7 @@ struct Atmosphere {
     PlanckTable *planck[2];    /* mwir, lwir */
     Grid         solar;        /* visibility, water, ground, sun: ln depth and ln diffuse: atmosphere_solar.c */
     Grid         phase;        /* height_m, scattering angle in rad: ln of haze's phase function, mean 1 */
+    Grid         limb;         /* visibility, observer_m, place: factors of mwir, lwir; none: without the file */
     double       ground_kg_m3; /* vapour of its own air; NaN: its tables do not say */
     /* what follows the weather; NULL: nothing, the air is its own tables' */
     Vapour          *vapour;
@@ -279,6 +280,27 @@ double air_legs_depth(AirBand band, double tangent_m, double first, double secon
 double air_legs_passed(AirBand band, double tangent_m, double first, double second);
 /* The same of the sky's radiance at the lowest point, seen level: it comes from far up, where lines are narrow. */
 double air_legs_sky_passed(AirBand band, double tangent_m, double first);
+
+/* Cosine of the zenith angle at which a path leaves its observer, over the round Earth. */
+double air_ray_up(const AirPath *path);
+
+/* ---- what the air of a path down from an eye sends: atmosphere_limb.c ------------------------------------- */
+
+/* limb.csv of a model's folder. */
+Status limb_open(Atmosphere *atmosphere, const char *folder);
+/* Factors on the thermal radiance that paths and skies of flat layers have in mwir and lwir, by the observer's height,
+ * the cosine of the zenith angle there and the range (INFINITY: to space): 1 of a path that does not go down; of one
+ * that ends before its lowest point, or the ground, the square of the share that its range has
+ * of the way there. */
+void air_limb_factors(double out[2], const Atmosphere *atmosphere, const Blend *blend, double observer_m, double up,
+                      double range_m);
+/* Thermal radiance of the sky, from the horizontal up. */
+double air_sky_thermal(const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,
+                       double zenith_rad);
+/* Thermal radiance of the air between an observer above the top of the tables of paths and where the ray enters them,
+ * or its lowest point: what the sky has more from there, looking up the same line. 0 from below. */
+double air_above_top(const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m, double up,
+                     double top_m);
 
 /* ---- the air of a day: atmosphere_day.c, opened by atmosphere_day_open.c ---------------------------- */
 

@@ -90,7 +90,7 @@ static void begin(Atmosphere *out, VapourMix *mix, double *level_k, const Atmosp
     memcpy(out->sun_top_w_m2, model->sun_top_w_m2, sizeof out->sun_top_w_m2);
     memcpy(out->planck, model->planck, sizeof out->planck);
     out->temperature = model->temperature, out->temperature.value = level_k;
-    out->phase = model->phase, out->solar = model->solar;
+    out->phase = model->phase, out->limb = model->limb, out->solar = model->solar;
     out->vapour = model->vapour, out->vapour_profile = model->vapour_profile, out->vapour_row = model->vapour_row;
     memcpy(out->vapour_channel, model->vapour_channel, sizeof out->vapour_channel);
     out->mix = mix;
