@@ -62,6 +62,9 @@ Status world_need_patches(const World *world, const Snapshot *snapshot);
 double world_air_k(const World *world, double unix_s);
 void   world_close(World *world);
 
+/* How rays from an eye bend in optical and infrared bands, 1/m (terrain/earth/refraction.h). */
+double world_bend(const World *world, const double eye_enu[3]);
+
 /* Its air over its origin. ground_k: AirSource's. */
 AirSource world_air_source(const World *world, double ground_k);
 
