@@ -36,7 +36,7 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
                           .air = air,
                           .sky_samples = request->sky_samples,
                           .hidden_entity = request->hidden_entity};
-    const double     bend_per_m = request->refraction ? world_bend(world, request->view.p_enu) : 0;
+    const double     bend_per_m = request->refraction ? world_bend(world, REFRACTION_OPTICAL, request->view.p_enu) : 0;
     const EffectView seen = {.bend_per_m = bend_per_m,
                              .frame = &world->frame,
                              .view = &request->view,

@@ -5,7 +5,6 @@
 #include "render/trace/parts/parts.h"
 #include "render/trace/plants/plants_kept.h"
 #include "render/light/canopy.h"
-#include "terrain/earth/refraction.h"
 
 #include <stdlib.h>
 
@@ -146,9 +145,9 @@ static double ground_at_origin(const World *world)
     return world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
 }
 
-double world_bend(const World *world, const double eye_enu[3])
+double world_bend(const World *world, RefractionBand band, const double eye_enu[3])
 {
-    return refraction_bend_at(REFRACTION_OPTICAL, &world->frame, eye_enu, ground_at_origin(world));
+    return refraction_bend_at(band, &world->frame, eye_enu, ground_at_origin(world));
 }
 
 AirSource world_air_source(const World *world, double ground_k)

@@ -332,7 +332,7 @@ void truth_footprint(GroundPoint out[FOOTPRINT_COUNT], const World *world, const
     const double corner[FOOTPRINT_COUNT][2] = {{0.5, 0.5}, {0, 0}, {1, 0}, {1, 1}, {0, 1}};
     Ground       ground;
     ground_prepare(&ground, world->landscape ? &world->landscape->elevation : NULL);
-    if (request->refraction) ground.bend_per_m = world_bend(world, view->p_enu);
+    if (request->refraction) ground.bend_per_m = world_bend(world, REFRACTION_OPTICAL, view->p_enu);
     for (int k = 0; k < FOOTPRINT_COUNT; k++)
         out[k] = ground_point(&ground, &world->frame, view, corner[k][0] * view->width, corner[k][1] * view->height);
 }

@@ -1,13 +1,11 @@
 /* Ships over the horizon of a spherical sea, by rays that air bends: dip, hull-down and the places of hits by closed
  * forms; the same bits without skips and with any number of threads. labels: physics */
-#include "tests/render/hand_world.h"
+#include "tests/render/hand_sea.h"
 
 /* k = 1.149 (terrain/earth/refraction.h), less by half a per cent of the air under the eye: 1 - exp(-h / 11 km). */
-static const double earth_m = 6371e3, eye_m = 100, refracted = 0.12968 * 0.9955;
-static const double tall_m = 30, low_m = 5, ship_half_m = 30, boat_half_m = 3; /* the low one is smaller than what it is raised by */
-static const double cell_m = 200, west_m = -8000, south_m = -4000;
-
-static double sea_m(double x_m, double y_m) { return -(x_m * x_m + y_m * y_m) / (2 * earth_m); }
+/* Of k = 1.149 (terrain/earth/refraction.h), less half a per cent of the air under the eye: (1 - 1/k) (1 - h / 22 km).
+ */
+static const double refracted = 0.12968 * 0.9955;
 
 /* Distance of the horizon, and what it hides of a thing at y_m, by an Earth of the radius that makes rays straight. */
 static double horizon_m(bool bent) { return sqrt(2 * earth_m * eye_m / (1 - (bent ? refracted : 0))); }
@@ -17,61 +15,10 @@ static double hidden_m(bool bent, double y_m)
     return beyond_m > 0 ? beyond_m * beyond_m * (1 - (bent ? refracted : 0)) / (2 * earth_m) : 0;
 }
 
-/* The sea, 16 km wide and 64 km long; posts are rounded to 1/128 m, and cells of 200 m are 0.8 mm below the sphere. */
-static void lay_sea(Elevation *e)
-{
-    enum { columns = 81, rows = 341 };
-    const ElevationGrid grid = {columns, rows, west_m, south_m, cell_m, -400, 1.0 / 128};
-    elevation_destroy(e);
-    memset(e, 0, sizeof *e);
-    assert_int_equal(elevation_level_create(e, 0, &grid), STATUS_OK);
-    for (int j = 0; j < rows; j++)
-        for (int i = 0; i < columns; i++)
-            elevation_set_post(&e->level[0], i, j,
-                               (uint16_t)lround(128 * (sea_m(west_m + i * cell_m, south_m + j * cell_m) + 400)));
-    elevation_build_pyramids(e);
-}
-
-/* hand_open's world at sea level, with ships for its models: a tall one and a small one. */
-static int open_sea(void **state)
-{
-    (void)state;
-    char            path[text_file_size];
-    LocalFrame      frame;
-    Model           model;
-    LandscapeConfig config = landscape_default_config();
-    text_file(path, "type,model,origin\n1,tank,base\n2,missile,base\n");
-    if (catalog_open(&hand.catalog, path, 0.01) != STATUS_OK) return -1;
-    remove(path);
-    for (int k = 0; k < 2; k++) {
-        const double high_m = k == 0 ? tall_m : low_m, half_m = k == 0 ? ship_half_m : boat_half_m;
-        hand_box(&model, (const double[3]){-half_m, -half_m, -high_m}, (const double[3]){half_m, half_m, 0});
-        hand.model[k] = hand_replace(1 + k, &model);
-    }
-    config.half_width_m = 500, config.horizon_m = 20000;
-    if (local_frame_at(&frame, &(Geodetic){0.6, -1.9, 0}) != STATUS_OK) return -1;
-    if (landscape_create(&hand.landscape, &config, &frame, NULL, 0, NULL, 0) != STATUS_OK) return -1;
-    lay_sea(&hand.landscape.elevation);
-    if (world_open(&hand.world, hand.catalog, &hand.landscape, &frame, "avx2") != STATUS_OK) return -1;
-    hand.arena = arena_create(), hand.air_arena = arena_create();
-    const bool good = atmosphere_open(&hand.world.atmosphere, "us1976") == STATUS_OK;
-    hand_air_off((const double[3]){0.6, 0, 0.8});
-    return good && pool_create(&hand.pool, 2) == STATUS_OK ? 0 : -1;
-}
-
 /* North, 1 px = 0.02 mrad: a metre at 50 km. */
 static View north(void)
 {
     return hand_view((const double[3]){0, 0, eye_m}, (const double[3]){0, 1, -0.0052}, 200, 100, 50000);
-}
-
-static void put_ship(int model, double x_m, double y_m)
-{
-    static const double west[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1}; /* its sides to north and east; upright */
-    double              r[9];
-    memcpy(r, west, sizeof r);
-    hand_attitude(r, 0, 0);
-    hand_add(model, (const double[3]){x_m, y_m, sea_m(x_m, y_m)}, r);
 }
 
 static RenderRequest request_of(bool bent)
@@ -110,7 +57,7 @@ static const Visibility *see(bool bent, unsigned skips_off)
                                .snapshot = &hand.snapshot,
                                .skips_off = skips_off,
                                .eye_enu = {0, 0, eye_m}};
-    if (bent) config.bend_per_m = world_bend(&hand.world, config.eye_enu);
+    if (bent) config.bend_per_m = world_bend(&hand.world, REFRACTION_OPTICAL, config.eye_enu);
     assert_int_equal(visibility_create_seen(&v, &config, hand.arena), STATUS_OK);
     return v;
 }
@@ -145,8 +92,8 @@ static void hulls_go_down(void **state)
         }
 }
 
-/* A ship 5 m high at 44 km: behind the horizon of straight rays, before that of bent ones. In the picture its metal shines
- * in the sun, where the sea is black. */
+/* A ship 5 m high at 44 km: behind the horizon of straight rays, before that of bent ones. In the picture its metal
+ * shines in the sun, where the sea is black. */
 static void low_ships_come_into_sight(void **state)
 {
     (void)state;
@@ -172,8 +119,8 @@ static void low_ships_come_into_sight(void **state)
     }
 }
 
-/* Where things are, they are hit: the sea on its sphere, beyond the horizon of straight rays too, with its upper side; a
- * ship's side on that side. */
+/* Where things are, they are hit: the sea on its sphere, beyond the horizon of straight rays too, with its upper side;
+ * a ship's side on that side. */
 static void hits_are_where_things_are(void **state)
 {
     (void)state;

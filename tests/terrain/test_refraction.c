@@ -24,9 +24,9 @@ static void lifts(void **state)
     }
 }
 
-/* Bowditch, The American Practical Navigator: visible horizon 1.144 sqrt(feet) nautical miles (table 8 up to 1981: 2.072
- * sqrt(m)), 1.169 since (2.117); without air 1.064 (1.927). The Nautical Almanac's dip: 1.76' sqrt(m), without air 1.926'.
- * Radar: 4.12 km sqrt(m) (4/3; Skolnik, Introduction to Radar Systems). */
+/* Bowditch, The American Practical Navigator: visible horizon 1.144 sqrt(feet) nautical miles (table 8 up to
+ * 1981: 2.072 sqrt(m)), 1.169 since (2.117); without air 1.064 (1.927). The Nautical Almanac's dip: 1.76' sqrt(m),
+ * without air 1.926'. Radar: 4.12 km sqrt(m) (4/3; Skolnik, Introduction to Radar Systems). */
 static void horizons(void **state)
 {
     (void)state;
@@ -42,8 +42,8 @@ static void horizons(void **state)
 }
 
 /* n r cos(elevation) is the same all along a ray in a spherical atmosphere: the dip to a horizon at sea level is
- * acos(n0 R / (n (R + h))), with n - 1 = 0.12968 (scale / R) exp(-h / scale): of that gradient at the ground, scale 11 km.
- * It is within a per cent up to 20 km, and dies out: from 300 km it is less than a thousandth. */
+ * acos(n0 R / (n (R + h))), with n - 1 = 0.12968 (scale / R) exp(-h / scale): of that gradient at the ground, scale 11
+ * km. It is within a per cent up to 20 km, and dies out: from 300 km it is less than a thousandth. */
 static void high_eyes(void **state)
 {
     (void)state;
@@ -54,8 +54,10 @@ static void high_eyes(void **state)
         const double raised_rad = vacuum - acos(cosine), got_rad = dip_rad(0, eye_m) - dip_rad(bend, eye_m);
         CHECK_NEAR(got_rad, raised_rad, 0.02 * raised_rad);
     }
-    CHECK_NEAR(refraction_bend(REFRACTION_OPTICAL, 11000, 0) / refraction_bend(REFRACTION_OPTICAL, 0, 0), 1 - exp(-1), 1e-12);
-    CHECK_NEAR(refraction_bend(REFRACTION_RADAR, 7350, 0) / refraction_bend(REFRACTION_RADAR, 0, 0), 1 - exp(-1), 1e-12);
+    CHECK_NEAR(refraction_bend(REFRACTION_OPTICAL, 11000, 0) / refraction_bend(REFRACTION_OPTICAL, 0, 0), 1 - exp(-1),
+               1e-12);
+    CHECK_NEAR(refraction_bend(REFRACTION_RADAR, 7350, 0) / refraction_bend(REFRACTION_RADAR, 0, 0), 1 - exp(-1),
+               1e-12);
     CHECK(refraction_bend(REFRACTION_OPTICAL, 4e7, 0) < 5e-4 * refraction_bend(REFRACTION_OPTICAL, 0, 0));
 }
 
