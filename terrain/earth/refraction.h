@@ -15,7 +15,7 @@
  * step. Optical: scale 11 km, within 6 % of the mean gradient of density of the US Standard Atmosphere 1976 up to any
  * height; radar: 7.35 km (ITU-R P.453). Steep lines of sight from 10 km are bent up to 0.05 mrad too much, and those
  * between two aircraft of that height 1.6 times as much as there (0.25 mrad over 100 km); from space the edge of the
- * Earth by a third too little (0.1 degrees of dip). tests/terrain/test_refraction.c. */
+ * Earth by a fifth too little (0.02 degrees of dip). tests/terrain/test_refraction.c. */
 #ifndef TERRAIN_EARTH_REFRACTION_H
 #define TERRAIN_EARTH_REFRACTION_H
 

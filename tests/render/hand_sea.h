@@ -5,7 +5,8 @@
 #include "tests/render/hand_world.h"
 
 static const double earth_m = 6371e3, eye_m = 100;
-static const double tall_m = 30, low_m = 5, ship_half_m = 30, boat_half_m = 3; /* the low one is smaller than what it is raised by */
+static const double tall_m = 30, low_m = 5, ship_half_m = 30,
+                    boat_half_m = 3; /* the low one is smaller than what it is raised by */
 static const double cell_m = 200, west_m = -8000, south_m = -4000;
 
 static inline double sea_m(double x_m, double y_m) { return -(x_m * x_m + y_m * y_m) / (2 * earth_m); }

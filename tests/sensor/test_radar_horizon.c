@@ -29,8 +29,9 @@ static double farthest_of(const RadarShot *shot, double up_m)
     return near_m;
 }
 
-/* 4.12 km (sqrt(100) + sqrt(up)) with air (Skolnik), 3.57 km of a vacuum: of a mast of 10 m 54.2 and 47.0 km. The gradient
- * between 0 and 100 m is 0.7 % less than at the ground, 0.1 % of these distances; posts are rounded to 8 mm. */
+/* 4.12 km (sqrt(100) + sqrt(up)) with air (Skolnik), 3.57 km of a vacuum: of a mast of 10 m 54.2 and 47.0 km. The
+ * gradient between 0 and 100 m is 0.7 % less than at the ground, 0.1 % of these distances; posts are rounded to 8 mm.
+ */
 static void the_sea_hides(void **state)
 {
     (void)state;

@@ -324,14 +324,11 @@ static void first_hit_straight(ListRay *ray, const PlantList *list)
 }
 
 /* Ranges between which a ray is over a list's plants. */
-static bool over_plants(double span_m[2], double *top_m, const ListRay *ray, const PlantList *list, const double o[3])
+static bool over_plants(double span_m[2], const ListRay *ray, const struct RTCBounds *b, const double o[3])
 {
     static const double farthest_m = 1e7;
-    struct RTCBounds    b;
-    rtcGetSceneBounds(list->scene, &b);
-    const double low[2] = {(double)b.lower_x, (double)b.lower_y}, high[2] = {(double)b.upper_x, (double)b.upper_y};
+    const double low[2] = {(double)b->lower_x, (double)b->lower_y}, high[2] = {(double)b->upper_x, (double)b->upper_y};
     span_m[0] = 0, span_m[1] = smaller(ray->limit_m, farthest_m);
-    *top_m = (double)b.upper_z + 1;
     for (int c = 0; c < 2; c++) {
         const double d = ray->d_enu[c], per = fabs(d) < 1e-30 ? 1e30 : 1 / d;
         const double p = (low[c] - 1 - o[c]) * per, q = (high[c] + 1 - o[c]) * per;
@@ -342,12 +339,13 @@ static bool over_plants(double span_m[2], double *top_m, const ListRay *ray, con
 
 /* In straight pieces, each within less of the ray than plants' boxes have room: a chord of 1.6 km is 13 mm off at most.
  * A piece whose ends are above all plants is above them. */
-static void first_hit_bent(ListRay *ray, const PlantList *list)
+static void first_hit_bent(ListRay *ray, const PlantList *list, const struct RTCBounds *bounds)
 {
     static const double piece_m = 1600, nearest = 1e-4;
-    double              o[3], span_m[2], top_m;
+    const double        top_m = (double)bounds->upper_z + 1;
+    double              o[3], span_m[2];
     start_of(o, ray, list);
-    if (!over_plants(span_m, &top_m, ray, list, o)) return;
+    if (!over_plants(span_m, ray, bounds, o)) return;
     const double square = ray->d_enu[0] * ray->d_enu[0] + ray->d_enu[1] * ray->d_enu[1];
     const double step_m = piece_m / larger(sqrt(square), nearest), fall = ray->bend_per_m * square;
     for (double from_m = span_m[0]; from_m < smaller(span_m[1], ray->limit_m); from_m += step_m) {
@@ -368,14 +366,17 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
                            const double *const o_enu[3], const double *const d_enu[3], const uint8_t *real)
 {
     const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
+    struct RTCBounds bounds[2];
     ListRay          ray;
+    for (int k = 0; k < 2; k++)
+        if (lists[k] && lists[k]->scene) rtcGetSceneBounds(lists[k]->scene, &bounds[k]);
     open_rays(&ray);
     for (int i = 0; i < count; i++) {
         if (!open_ray(&ray, frame, o_enu, d_enu, i, range_m[i], real && real[i])) continue;
         ray.bend_per_m = frame->bend_per_m;
         for (int k = 0; k < 2; k++) {
             if (!lists[k] || !lists[k]->scene) continue;
-            if (frame->bend_per_m > 0) first_hit_bent(&ray, lists[k]);
+            if (frame->bend_per_m > 0) first_hit_bent(&ray, lists[k], &bounds[k]);
             else first_hit_straight(&ray, lists[k]);
         }
         if (!ray.met) continue;

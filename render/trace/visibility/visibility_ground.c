@@ -123,11 +123,9 @@ static void ground_finish(Hits *hits, const int *list, int count, const void *fo
     double            x_m[hits_capacity], y_m[hits_capacity], down[hits_capacity];
     (void)self;
     const double *const *d = block->d_enu, *const bent[3] = {d[0], d[1], down};
-    for (int k = 0; k < count && block->rays->bent; k++) { /* where a bent ray goes when it arrives */
-        const int    i = list[k];
-        const double range_m = hits->range_m[i];
-        down[i] = range_m > 0 ? d[2][i] - 2 * ray_drop(v, block->rays, i, range_m) / range_m : d[2][i];
-    }
+    const double twice = 2 * v->seen.bend_per_m;
+    for (int i = 0; i < hits->count && block->rays->bent; i++) /* where a bent ray goes when it arrives */
+        down[i] = d[2][i] - twice * hits->range_m[i] * (d[0][i] * d[0][i] + d[1][i] * d[1][i]);
     complete_normals(hits, v, found, list, count, block->rays->bent ? bent : d);
     for (int i = 0; i < hits->count; i++) x_m[i] = y_m[i] = NAN;
     for (int k = 0; k < count; k++) {
