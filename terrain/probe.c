@@ -1,6 +1,7 @@
 /* terrain/probe.c: the probes of terrain: geodesy, geoid, sun and weather, one row at a time. */
 #include "terrain/probe.h"
 
+#include "terrain/earth/refraction.h"
 #include "terrain/earth/geoid.h"
 #include "terrain/earth/geodesy.h"
 #include "terrain/earth/sun.h"
@@ -142,7 +143,34 @@ static const char *weather_row(void *state, const ProbeValue *in, ProbeValue *ou
 
 static void weather_probe_close(void *state) { weather_course_close(state); }
 
+/* By parabolas: the sea sinks by d^2 / 2R, and a line of sight by bend d^2. */
+static const char *horizon_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    static const double earth_m = 6371e3;
+    const double        eye_m = in[0].number, range_m = in[1].number;
+    (void)state;
+    if (!(eye_m >= 0 && eye_m <= 1e6)) return "eye_m is 0 .. 1e6";
+    if (range_m < 0) return "range_m is below 0";
+    for (int band = REFRACTION_OPTICAL; band <= REFRACTION_RADAR; band++) {
+        const double bend = refraction_bend((RefractionBand)band, eye_m, 0), flat = 0.5 / earth_m - bend;
+        const double horizon_m = sqrt(eye_m / flat), beyond_m = fmax(range_m - horizon_m, 0);
+        ProbeValue  *to = out + 4 * band;
+        to[0].number = 2 * sqrt(flat * eye_m) / rad_per_deg;
+        to[1].number = horizon_m;
+        to[2].number = bend * range_m * range_m;
+        to[3].number = isnan(range_m) ? NAN : flat * beyond_m * beyond_m;
+    }
+    return NULL;
+}
+
 const Probe terrain_probes[] = {
+    {.name = "horizon",
+     .help =
+         "horizon at sea with refraction, of light and of radar: its dip and distance; how far air raises a thing at "
+         "range_m, and how much of it the sea hides",
+     .in = "eye_m,range_m?",
+     .out = "dip_deg,horizon_m,raised_m,hidden_m,radar_dip_deg,radar_horizon_m,radar_raised_m,radar_hidden_m",
+     .row = horizon_row},
     {.name = "sun",
      .help = "apparent place of the sun (ERFA; parallax and refraction as NREL SPA); delta_t_s: TT - UT1",
      .in = "utc$,lat_deg,lon_deg,h_m,pressure_mbar,temp_c,delta_t_s?",

@@ -58,6 +58,7 @@ static bool shadow_box(double box[4], const Job *job, int index)
     const double above_m =
         foot_enu[2] - elevation_height(&job->scene.world->landscape->elevation, foot_enu[0], foot_enu[1], NULL);
     if (!(fabs(above_m) < model->height_m)) return false;
+    foot_enu[2] += visibility_lift(job->scene.visibility, index);
     v3_add_scaled(tip_enu, foot_enu, -model->height_m / sun[2], sun);
     tip_enu[2] = foot_enu[2];
     if (!sphere_box(foot, &job->request->view, foot_enu, 0.5 * model->radius_m) ||
@@ -81,7 +82,7 @@ typedef struct ThinLine {
 } ThinLine;
 
 /* False: not all of it is in front of the eye, or it is a point. */
-static bool line_of_box(ThinLine *out, const View *view, const PosedNode *node, const ThinBox *box)
+static bool line_of_box(ThinLine *out, const View *view, const PosedNode *node, double lift_m, const ThinBox *box)
 {
     double along_px[3][2], end_px[3][2][2], longest_px = 0;
     int    longest = 0;
@@ -92,6 +93,7 @@ static bool line_of_box(ThinLine *out, const View *view, const PosedNode *node, 
             m3_mul_v3(p_enu, node->r_enu_from_node, p_node);
             v3_add(p_enu, p_enu, node->p_enu);
             v3_sub(p_enu, p_enu, view->p_enu);
+            p_enu[2] += lift_m;
             m3_tmul_v3(p_cam, view->r_enu_from_cam, p_enu);
             if (!(p_cam[2] > 0)) return false;
             view_project(end_px[a][s], view, p_cam);
@@ -134,13 +136,14 @@ static void mark_line(Job *job, const ThinLine *line, uint8_t flag)
 static void mark_thin_lines(Job *job, int index, uint8_t flag)
 {
     const PosedEntity *entity = visibility_posed(job->scene.visibility, index);
+    const double       lift_m = visibility_lift(job->scene.visibility, index);
     for (int n = 0; entity->model >= 0 && n < entity->node_count; n++) {
         int            count;
         const ThinBox *box = parts_node_thin(&entity->node[n], &count);
         for (int k = 0; k < count; k++) {
             ThinLine line;
-            if (line_of_box(&line, &job->request->view, &entity->node[n], &box[k]) && line.width_px < thin_box_px)
-                mark_line(job, &line, flag);
+            if (!line_of_box(&line, &job->request->view, &entity->node[n], lift_m, &box[k])) continue;
+            if (line.width_px < thin_box_px) mark_line(job, &line, flag);
         }
     }
 }
@@ -322,6 +325,8 @@ void recall_ground(Worker *w, const Job *job)
             hits->p_enu[k][i] = view->p_enu[k] + (double)p->range_m[px] * d_enu[k];
             hits->n_geo[k][i] = hits->n_enu[k][i] = p->normal[k][px];
         }
+        const double p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
+        hits->p_enu[2][i] -= visibility_lift_at(job->scene.visibility, p_enu);
         w->samples.sun[i] = job->sun[px];
     }
     landscape_surfaces(hits->surface, job->scene.world->landscape, hits->count, hits->p_enu[0], hits->p_enu[1]);

@@ -131,6 +131,13 @@ static void places_through_lens(SquarePlaces *out, const View *view, const doubl
     }
 }
 
+/* Normal of the ground at a hit where rays are straight lines: what is seen rises with the distance from the eye. */
+static void seen_normal(double n[3], const Visibility *v, const Hits *hits, int i, const double d_enu[3])
+{
+    const double twice = 2 * visibility_bend(v) * hits->range_m[i] * (double)hits->n_geo[2][i];
+    for (int c = 0; c < 3; c++) n[c] = (double)hits->n_geo[c][i] - (c < 2 ? twice * d_enu[c] : 0);
+}
+
 /* Classes of the points over a square of 1 / n px about a sample's position, the most frequent first; the rest is
  * counted to the first. Returns their number, 1 .. most; 0: no ground there. */
 static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, const Job *job, int i,
@@ -140,11 +147,12 @@ static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, con
     const Hits  *hits = &w->samples.hits;
     const Rays  *rays = &w->samples.rays;
     const int    places = side * side;
-    const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
     const double d_hit[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+    double       n[3];
     SquarePlaces square;
     uint8_t      surface[ground_mix_places];
     GroundPatch  found[SURFACE_COUNT] = {{0}};
+    seen_normal(n, job->scene.visibility, hits, i, d_hit);
     places_about(&square, offset_px, centre_px, places);
     if (view_has_lens(view)) places_through_lens(&square, view, n, d_hit, hits->range_m[i], places);
     else places_on_plane(&square, view, n, d_hit, hits->range_m[i], centre_px, places);
@@ -174,17 +182,20 @@ static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, con
 }
 
 /* Moves a ground sample to another position of the picture on the plane of its hit. */
-static void move_sample(Hits *hits, Rays *rays, int i, const View *view, const double at_px[2])
+static void move_sample(Hits *hits, Rays *rays, int i, const Job *job, const double at_px[2])
 {
-    const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+    const View  *view = &job->request->view;
     const double d_hit[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
-    double       d[3];
+    double       d[3], n[3];
+    seen_normal(n, job->scene.visibility, hits, i, d_hit);
     view_ray(d, view, at_px[0], at_px[1]);
     hits->range_m[i] = plane_through(n, d_hit, hits->range_m[i], d);
     for (int k = 0; k < 3; k++) {
         rays->d_enu[k][i] = d[k];
         hits->p_enu[k][i] = view->p_enu[k] + hits->range_m[i] * d[k];
     }
+    hits->p_enu[2][i] -=
+        visibility_lift_at(job->scene.visibility, (const double[3]){hits->p_enu[0][i], hits->p_enu[1][i]});
 }
 
 void split_ground(Worker *w, const Job *job, int side, int most)
@@ -196,7 +207,8 @@ void split_ground(Worker *w, const Job *job, int side, int most)
     Rays             *rays = &w->rays;
     float             sun[hits_capacity];
     int               count = 0;
-    double            offset_px[2][ground_mix_places];
+    rays->bent = s->rays.bent;
+    double offset_px[2][ground_mix_places];
     assert(before * most <= hits_capacity && most <= ground_mix_most && side * side <= ground_mix_places);
     for (int k = 0; k < side * side; k++) {
         double place[2];
@@ -220,7 +232,7 @@ void split_ground(Worker *w, const Job *job, int side, int most)
             hits->weight[count] = (float)patch[k].count / (float)(side * side);
             hits->surface[count] = patch[k].surface;
             hits->material[count] = (uint16_t)job->scene.world->materials.surface[patch[k].surface];
-            if (patches > 1) move_sample(hits, rays, count, &job->request->view, patch[k].place);
+            if (patches > 1) move_sample(hits, rays, count, job, patch[k].place);
         }
     }
     for (int i = 0; i < count; i++) s->sun[i] = sun[i];

@@ -31,7 +31,8 @@ typedef struct RenderRequest {
     int edge_samples;            /* the same where neighbours disagree, 2 .. 16; not above samples: nowhere */
     int target_samples;          /* rays a side over the whole of a target that is small on the image, 8 .. 256; 0: as
                                   * all others */
-    int hidden_entity;           /* snapshot index of the entity whose parts the eye does not see (they cast shadows);
+    bool refraction;             /* rays from the eye bend in air (terrain/earth/refraction.h) */
+    int  hidden_entity;          /* snapshot index of the entity whose parts the eye does not see (they cast shadows);
                                   * -1: none */
     unsigned
            skips_off; /* 1 << Skip (render/trace/visibility/visibility.h): skips to disable; must give the same bits */

@@ -36,7 +36,9 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
                           .air = air,
                           .sky_samples = request->sky_samples,
                           .hidden_entity = request->hidden_entity};
-    const EffectView seen = {.frame = &world->frame,
+    const double     bend_per_m = request->refraction ? world_bend(world, REFRACTION_OPTICAL, request->view.p_enu) : 0;
+    const EffectView seen = {.bend_per_m = bend_per_m,
+                             .frame = &world->frame,
                              .view = &request->view,
                              .ground_rho = world->materials.ground_rho,
                              .bands = channels,
@@ -47,8 +49,14 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
     if (!volume) return STATUS_NO_MEMORY;
     for (int n = 0; n < scene->effects.count; n++) volume[n] = n;
     scene->all_volumes = volume;
-    status =
-        visibility_create(&posed, world->tracer, world->landscape, &world->frame, snapshot, request->skips_off, arena);
+    VisibilityConfig eye = {.tracer = world->tracer,
+                            .ground = world->landscape,
+                            .frame = &world->frame,
+                            .snapshot = snapshot,
+                            .skips_off = request->skips_off,
+                            .bend_per_m = bend_per_m};
+    memcpy(eye.eye_enu, request->view.p_enu, sizeof eye.eye_enu);
+    status = visibility_create_seen(&posed, &eye, arena);
     if (status != STATUS_OK) return status;
     visibility_materials(posed, &world->materials);
     scene->visibility = posed;
@@ -67,7 +75,7 @@ Status shade_samples_create(Samples *out, int capacity, Arena *arena)
 {
     const size_t n = (size_t)capacity;
     bool         ok = capacity >= 1 && capacity <= hits_capacity;
-    *out = (Samples){.capacity = capacity};
+    *out = (Samples){.capacity = capacity, .rays.bent = true};
     for (int b = 0; b < AIR_BAND_COUNT; b++) ok = ok && (out->radiance[b] = arena_alloc(arena, n, sizeof(float)));
     ok = ok && (out->sun = arena_alloc(arena, n, sizeof *out->sun));
     ok = ok && (out->temp_k = arena_alloc(arena, n, sizeof *out->temp_k));

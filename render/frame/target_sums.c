@@ -196,6 +196,7 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const SharedBloc
         uint64_t       left_out = 0;
 
         some->count = some->columns = 0;
+        some->bent = true;
         visibility_lie_beyond(sums->beyond, rules->visibility, index, &s->rays, s->hits.range_m);
         for (int i = 0; i < s->hits.count; i++) {
             if (s->hits.entity[i] == id) {
@@ -344,6 +345,7 @@ void project_target(void *user, int worker, int index)
     if (index == job->request->hidden_entity || entity->model < 0) return;
     enu_from_ecef(p_enu, &job->scene.world->frame, entity->p_ecef);
     v3_sub(offset_enu, p_enu, view->p_enu);
+    offset_enu[2] += visibility_lift(job->scene.visibility, index);
     m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
     const double radius_m = catalog_model(job->scene.world->catalog, entity->model)->radius_m;
     if (!(p_cam[2] > -radius_m)) return;

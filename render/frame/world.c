@@ -140,11 +140,20 @@ void world_close(World *world)
     memset(world, 0, sizeof *world);
 }
 
+static double ground_at_origin(const World *world)
+{
+    return world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
+}
+
+double world_bend(const World *world, RefractionBand band, const double eye_enu[3])
+{
+    return refraction_bend_at(band, &world->frame, eye_enu, ground_at_origin(world));
+}
+
 AirSource world_air_source(const World *world, double ground_k)
 {
-    const double above_origin_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
     return (AirSource){world->atmosphere, world->planck_mwir, world->planck_lwir, ground_k,
-                       world->frame.origin.h_m + above_origin_m};
+                       world->frame.origin.h_m + ground_at_origin(world)};
 }
 
 /* ---- what drives the ground: the weather, with the sun and sky of the atmosphere --------------- */

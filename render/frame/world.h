@@ -12,6 +12,7 @@
 #include "render/scattering/radar_image.h"
 #include "render/trace/visibility/visibility.h"
 #include "terrain/detail/detail.h"
+#include "terrain/earth/refraction.h"
 #include "terrain/weather/weather.h"
 
 typedef struct World {
@@ -61,6 +62,9 @@ Status world_need_patches(const World *world, const Snapshot *snapshot);
 /* Air temperature at ground level then, K; NaN: the world is not warm. */
 double world_air_k(const World *world, double unix_s);
 void   world_close(World *world);
+
+/* How rays from an eye bend, 1/m. */
+double world_bend(const World *world, RefractionBand band, const double eye_enu[3]);
 
 /* Its air over its origin. ground_k: AirSource's. */
 AirSource world_air_source(const World *world, double ground_k);

@@ -190,6 +190,7 @@ void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const 
     Sums  sum = {0};
 
     paths.rays.count = paths.rays.columns = 0;
+    paths.rays.bent = false;
     for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);

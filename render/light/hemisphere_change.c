@@ -348,6 +348,7 @@ void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, cons
         sky_notes_begin(notes, hits->count);
     }
     paths.rays.count = paths.rays.columns = 0;
+    paths.rays.bent = false;
     for (int i = 0; i < hits->count; i++) {
         if (known[i] && !job.open.ring_shines) continue;
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);

@@ -118,12 +118,14 @@ int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
  * followed behind it. Returns their number. */
 static int keep_meeting(Rays *rays, int point[task_places], const Visibility *v, int index, bool ask_all)
 {
-    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    double              z_m[task_places];
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], z_m};
     const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
     double              range_m[task_places];
     PartHit             hit[task_places];
     int                 all[task_places], kept = 0;
-    for (int i = 0; i < rays->count; i++) range_m[i] = INFINITY, all[i] = i;
+    const double        lift_m = rays->bent ? visibility_lift(v, index) : 0;
+    for (int i = 0; i < rays->count; i++) range_m[i] = INFINITY, all[i] = i, z_m[i] = rays->o_enu[2][i] - lift_m;
     parts_first_hits(range_m, hit, visibility_posed(v, index), o, d, rays->far_m, all, rays->count, ask_all);
     for (int i = 0; i < rays->count; i++) {
         if (!(range_m[i] < INFINITY)) continue;
@@ -172,7 +174,7 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
     Hits                  *met = &w->met, *places = &w->places;
     int    of[task_places], point[task_places], count = all - first < task_places ? all - first : task_places;
     double box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    rays->count = count, rays->columns = 0;
+    rays->count = count, rays->columns = 0, rays->bent = !e->of_body;
     for (int i = 0; i < count; i++) {
         const double at[2] = {e->low[0] + e->step[0] * ((first + i) % e->columns + 0.5),
                               e->low[1] + e->step[1] * ((first + i) / e->columns + 0.5)};
@@ -333,6 +335,7 @@ static void place_on_grid(double at[2], const SkyEntity *e, const SkyVisibility 
         return;
     }
     v3_sub(offset_enu, p_enu, view->p_enu);
+    offset_enu[2] += visibility_lift(v->scene.gather.visibility, e->index);
     m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
     view_project(at, view, p_cam);
 }

@@ -74,6 +74,7 @@ static void first_bounce(RadarReturns *out, Block *s, const Hits *hits)
     const Rays *rays = s->rays;
     s->paths.count = s->onward.count = 0;
     s->onward.columns = s->back.columns = 0; /* rays of no picture's rows */
+    s->onward.bent = s->back.bent = false;
     for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
         const Material *m = &s->materials->material[hits->material[i]];

@@ -10,6 +10,7 @@ typedef struct Rays {
     int count;
     int columns;                    /* of a picture, in rows one after another; 0: no such order. A hint for speed
                                      * alone */
+    bool   bent;                    /* all leave the frame's eye and bend in its air (VisibilityConfig) */
     double o_enu[3][hits_capacity]; /* origins */
     double d_enu[3][hits_capacity]; /* unit directions */
     double far_m[hits_capacity];    /* search limit; INFINITY: to the sky */
@@ -82,7 +83,7 @@ static inline void hits_copy_all(Hits *hits, Rays *rays, const Hits *from_hits, 
     const size_t n = (size_t)from_hits->count;
 #define COPY_ROWS(to, from) memcpy(to, from, n * sizeof *(to))
     hits->count = from_hits->count, hits->columns = from_hits->columns, hits->several = from_hits->several;
-    rays->count = from_rays->count, rays->columns = from_rays->columns;
+    rays->count = from_rays->count, rays->columns = from_rays->columns, rays->bent = from_rays->bent;
     COPY_ROWS(hits->ray, from_hits->ray);
     COPY_ROWS(hits->weight, from_hits->weight);
     COPY_ROWS(hits->range_m, from_hits->range_m);

@@ -144,6 +144,7 @@ typedef struct EffectScene {
 typedef struct EffectView {
     const LocalFrame *frame;
     const View       *view;
+    double            bend_per_m; /* of its rays (terrain/earth/refraction.h); volumes are placed as they are seen */
     const float      *ground_rho; /* of the lit ground below, by optical channel */
     unsigned          bands;      /* 1 << band of smoke.h that will be requested */
     int               hidden; /* snapshot index of the host, -1: none. Its eye does not see its own smoke, as it does

@@ -7,6 +7,7 @@
  * (Wrenninge, Kulla, Lundqvist 2013): an approximation; a thick white cloud lit from behind the eye gets a
  * reflectance of about 0.4. */
 #include "render/smoke/smoke.h"
+#include "terrain/earth/refraction.h"
 
 #include <stdlib.h>
 
@@ -201,10 +202,11 @@ Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, const Eff
         double      *d_eye_enu = placed[count].d_eye_enu;
         *v = (SmokeVolume){.along_m = volume.along_m, .across_m = volume.across_m, .billow = law->billow};
         memcpy(v->p_enu, volume.p_enu, sizeof v->p_enu);
+        v->p_enu[2] += refraction_drop(seen->bend_per_m, view->p_enu, volume.p_enu); /* as the eye sees it */
         memcpy(v->axis_enu, volume.axis_enu, sizeof v->axis_enu);
         memcpy(v->d_sun_enu, air->light.sun_d_enu, sizeof v->d_sun_enu);
         memcpy(v->extinction_per_m, volume.extinction_per_m, sizeof v->extinction_per_m);
-        v3_sub(d_eye_enu, volume.p_enu, view->p_enu);
+        v3_sub(d_eye_enu, v->p_enu, view->p_enu);
         v->range_m = v3_length(d_eye_enu);
         if (!v3_normalize(d_eye_enu, d_eye_enu)) d_eye_enu[2] = 1;
         for (int k = 0; k < 3; k++) v->pattern[k] = 256 * random_uniform(puff->seed, 80, 0, (uint64_t)k);

@@ -62,6 +62,7 @@ static Status measure(FrameOutput *out, Instrument *instrument, const Instrument
     const Weather          weather = frame_weather_at(r->config, f->world, f->unix_s);
     const RadarFrame      *measured = NULL;
     RadarScene             scene = {.world = f->world,
+                                    .refraction = f->request.refraction,
                                     .snapshot = &f->seen.snapshot,
                                     .view = &f->request.view,
                                     .hidden = f->request.hidden_entity,

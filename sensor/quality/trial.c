@@ -114,6 +114,7 @@ RenderRequest trial_default_request(const TrialScene *scene, const View *view, d
                            .optical = config_optical(&c),
                            .sky_samples = c.sensor.sky_samples,
                            .sky_visibility = c.sensor.sky_visibility,
+                           .refraction = c.sensor.refraction,
                            .samples = c.sensor.samples,
                            .edge_samples = c.sensor.edge_samples,
                            .target_samples = c.sensor.target_samples,

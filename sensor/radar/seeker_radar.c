@@ -149,6 +149,7 @@ static double range_ahead(const RadarShot *shot)
     VisibilityCounters        counters = {0};
     rays.count = 1;
     rays.columns = 0;
+    rays.bent = true;
     rays.far_m[0] = INFINITY;
     for (int k = 0; k < 3; k++) {
         rays.o_enu[k][0] = shot->scene->view->p_enu[k];
@@ -391,12 +392,18 @@ static Status process(RadarShot *shot, const Interval *interval)
 /* The order of work in a shot. */
 static Status make(RadarShot *shot)
 {
-    const RadarScene *scene = shot->scene;
-    const Waveform   *wave = &shot->preset->wave;
-    Interval          interval = {.wave = *wave};
-    Visibility       *visibility;
-    Status status = visibility_create(&visibility, scene->world->tracer, scene->world->landscape, &scene->world->frame,
-                                      scene->snapshot, 0, shot->arena);
+    const RadarScene      *scene = shot->scene;
+    const Waveform        *wave = &shot->preset->wave;
+    Interval               interval = {.wave = *wave};
+    Visibility            *visibility;
+    const double          *p = scene->view->p_enu;
+    const VisibilityConfig seen = {.tracer = scene->world->tracer,
+                                   .ground = scene->world->landscape,
+                                   .frame = &scene->world->frame,
+                                   .snapshot = scene->snapshot,
+                                   .eye_enu = {p[0], p[1], p[2]},
+                                   .bend_per_m = scene->refraction ? world_bend(scene->world, REFRACTION_RADAR, p) : 0};
+    Status                 status = visibility_create_seen(&visibility, &seen, shot->arena);
     if (status != STATUS_OK) return status;
     visibility_materials(visibility, &scene->world->materials);
     shot->visibility = visibility;

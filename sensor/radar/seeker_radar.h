@@ -59,6 +59,7 @@ typedef struct RadarScene {
     const Snapshot *snapshot;
     const double   *joint;        /* values of the joints of its nodes, where these are posed; NULL: by snapshot_pose */
     const View     *view;         /* where the antenna is, and its axes */
+    bool            refraction;   /* what relief hides is by rays that bend in air */
     int             hidden;       /* snapshot index of the host, -1: none; it is not in its own way */
     double          v_enu_mps[3]; /* of the antenna */
     double          reference_m;  /* range to the aim; NAN: to the ground ahead */

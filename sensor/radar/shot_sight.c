@@ -65,6 +65,20 @@ double shot_null(const RadarShot *shot)
 
 /* ---- what stands before places -------------------------------------------------------------------- */
 
+/* The line of sight to where air raises a place to. */
+static Sight raised(const RadarShot *shot, const double from_enu[3], const Sight *sight)
+{
+    double p_enu[3];
+    Sight  out = *sight;
+    if (!(visibility_bend(shot->visibility) > 0)) return out;
+    v3_add_scaled(p_enu, from_enu, sight->range_m, sight->d_enu);
+    p_enu[2] += visibility_lift_at(shot->visibility, p_enu);
+    v3_sub(out.d_enu, p_enu, from_enu);
+    out.range_m = v3_length(out.d_enu);
+    if (!v3_normalize(out.d_enu, out.d_enu)) return *sight;
+    return out;
+}
+
 void shot_hidden(bool *hidden, const RadarShot *shot, const double from_enu[3], const Sight *sight,
                  const double *slack_m, int count, int own)
 {
@@ -73,18 +87,20 @@ void shot_hidden(bool *hidden, const RadarShot *shot, const double from_enu[3], 
     VisibilityCounters        counters = {0};
     rays.count = count;
     rays.columns = 0;
+    rays.bent = true;
     for (int i = 0; i < count; i++) {
+        const Sight to = raised(shot, from_enu, &sight[i]);
         hidden[i] = false;
-        rays.far_m[i] = sight[i].range_m;
+        rays.far_m[i] = to.range_m;
         for (int k = 0; k < 3; k++) {
             rays.o_enu[k][i] = from_enu[k];
-            rays.d_enu[k][i] = sight[i].d_enu[k];
+            rays.d_enu[k][i] = to.d_enu[k];
         }
     }
     visibility_first_hit(&hits, shot->visibility, &rays, visibility_all_but(shot->scene->hidden), &counters);
     for (int i = 0; i < hits.count; i++) {
         const int  ray = hit_ray(&hits, i);
-        const bool before = hits.kind[i] != hit_sky && sight[ray].range_m - hits.range_m[i] > slack_m[ray];
+        const bool before = hits.kind[i] != hit_sky && rays.far_m[ray] - hits.range_m[i] > slack_m[ray];
         if (before && (own < 0 || (int)hits.entity[i] != own + 1)) hidden[ray] = true;
     }
 }

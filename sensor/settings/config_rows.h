@@ -36,6 +36,7 @@ enum { config_paths_size = 4096 };
     ROW(INT, sensor., sky_samples, 0, 0, 4096, "", \
         "directions of incident light sampled at each hit; 0: closed form by slope, with sky_visibility") \
     ROW(SWITCH, sensor., sky_visibility, true, "on|off", "contact shadows: entities occlude sky and ground near them") \
+    ROW(SWITCH, sensor., refraction, true, "on|off", "lines of sight bend in air; off: straight") \
     ROW(DOUBLE, sensor., gimbal_limit_deg, 45, 0, 180, "deg", "largest angle off the body axis") \
     ROW(DOUBLE, sensor., gimbal_rate_dps, 60, 0.01, 10000, "deg/s", "largest slew rate") \
     ROW(DOUBLE, sensor., gimbal_lag_s, 0.03, 0, 10, "s", "time constant of the tracking loop") \

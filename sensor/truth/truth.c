@@ -1,6 +1,6 @@
 /* sensor/truth/truth.c: truth of the targets in a frame, and where the image meets the ground. */
 #include "sensor/truth/truth.h"
-#include "terrain/earth/geodesy.h"
+#include "terrain/earth/refraction.h"
 #include "render/trace/ground/ground.h"
 
 /* Rate at which the Earth turns, rad/s. Source: IERS Conventions 2010, table 1.2 (nominal mean angular velocity). */
@@ -320,16 +320,19 @@ static GroundPoint ground_point(const Ground *ground, const LocalFrame *frame, c
     const double range_m = ground_first_hit(NULL, ground, view->p_enu, d_enu, INFINITY);
     if (!(range_m > 0 && range_m < INFINITY)) return out;
     v3_add_scaled(p_enu, view->p_enu, range_m, d_enu);
+    p_enu[2] -= refraction_drop(ground->bend_per_m, view->p_enu, p_enu);
     ecef_from_enu(p_ecef, frame, p_enu);
     if (geodetic_from_ecef(&place, p_ecef) != STATUS_OK) return out;
     return (GroundPoint){true, place.lat_rad, place.lon_rad, place.h_m, range_m};
 }
 
-void truth_footprint(GroundPoint out[FOOTPRINT_COUNT], const World *world, const View *view)
+void truth_footprint(GroundPoint out[FOOTPRINT_COUNT], const World *world, const RenderRequest *request)
 {
+    const View  *view = &request->view;
     const double corner[FOOTPRINT_COUNT][2] = {{0.5, 0.5}, {0, 0}, {1, 0}, {1, 1}, {0, 1}};
     Ground       ground;
     ground_prepare(&ground, world->landscape ? &world->landscape->elevation : NULL);
+    if (request->refraction) ground.bend_per_m = world_bend(world, REFRACTION_OPTICAL, view->p_enu);
     for (int k = 0; k < FOOTPRINT_COUNT; k++)
         out[k] = ground_point(&ground, &world->frame, view, corner[k][0] * view->width, corner[k][1] * view->height);
 }

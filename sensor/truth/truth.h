@@ -80,8 +80,7 @@ typedef enum FootprintPoint {
 } FootprintPoint;
 
 /* Five rays in double over the terrain's posts, in some microseconds. Corners are the outer corners of the corner
- * pixels, where the lens shows them. Refraction is not considered, as in the images. A sensor below the ground: none
- * known. */
-void truth_footprint(GroundPoint out[FOOTPRINT_COUNT], const World *world, const View *view);
+ * pixels, where the lens shows them; lines of sight bend as in the images. A sensor below the ground: none known. */
+void truth_footprint(GroundPoint out[FOOTPRINT_COUNT], const World *world, const RenderRequest *request);
 
 #endif

@@ -154,6 +154,47 @@ static void a_stand(void **state)
     close_forest();
 }
 
+/* A bent ray meets a plant as the straight one that starts lower by bend d^2, d from the eye to its foot. Trees
+ * stand 1.5 to 6 km away, over several pieces of a ray, so thin that few rays meet two. */
+static void bent_rays(void **state)
+{
+    static Plant        plant[60];
+    static const double origin[3] = {0, 0, 0}, bend_per_m = 2e-8;
+    static double       o[3][rays], d[3][rays], range_m[rays];
+    static ForestHit    hit[rays];
+    const double *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
+    int met = 0;
+    (void)state;
+    hand_grow(false, 0.06);
+    const Woods woods = hand_stand(plant, 60, origin, 30);
+    for (int k = 0; k < woods.count; k++)
+        plant[k].p_m[0] = (float)(1500 + 75 * k), plant[k].p_m[1] = (float)(40 * k - 1200), plant[k].p_m[2] = 0;
+    open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
+    frame.bend_per_m = bend_per_m;
+    for (int i = 0; i < rays; i++) { /* ten at each, up its middle */
+        const Plant *p = &plant[i / 10];
+        const double x = (double)p->p_m[0], y = (double)p->p_m[1], fall_m = bend_per_m * (x * x + y * y);
+        double       to[3] = {x, y, (i % 10 + 0.5) / 10 * plant_height_m(p) + fall_m - 2};
+        v3_normalize(to, to);
+        for (int c = 0; c < 3; c++) o[c][i] = c == 2 ? 2 : 0, d[c][i] = to[c];
+        range_m[i] = i % 3 ? INFINITY : 1e5;
+    }
+    forest_first_hits(range_m, hit, &frame, rays, from, way, NULL);
+    for (int i = 0; i < rays; i++) {
+        const Woods  one = {.plant = &plant[i / 10], .count = 1};
+        const double x = (double)one.plant->p_m[0], y = (double)one.plant->p_m[1];
+        uint32_t     of, quad = 0;
+        const double want_m = by_force(&of, &quad, &one, (const double[3]){0, 0, 2 - bend_per_m * (x * x + y * y)},
+                                       (const double[3]){d[0][i], d[1][i], d[2][i]}, 0, true, INFINITY);
+        if (!(want_m < INFINITY) || range_m[i] < want_m - 60) continue; /* missed, or another stands before it */
+        met++;
+        CHECK_NEAR(range_m[i], want_m, 1e-5 * want_m);
+        assert_int_equal(hit[i].plant, i / 10);
+    }
+    CHECK(met > rays / 4);
+    close_forest();
+}
+
 static void bare_trees(void **state)
 {
     static Plant plant[40];
@@ -368,9 +409,10 @@ static void openness(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_tree), cmocka_unit_test(a_stand),       cmocka_unit_test(bare_trees),
-        cmocka_unit_test(levels), cmocka_unit_test(along_the_box), cmocka_unit_test(far_away),
-        cmocka_unit_test(order),  cmocka_unit_test(transmittance), cmocka_unit_test(openness),
+        cmocka_unit_test(a_tree),     cmocka_unit_test(a_stand), cmocka_unit_test(bent_rays),
+        cmocka_unit_test(bare_trees), cmocka_unit_test(levels),  cmocka_unit_test(along_the_box),
+        cmocka_unit_test(far_away),   cmocka_unit_test(order),   cmocka_unit_test(transmittance),
+        cmocka_unit_test(openness),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

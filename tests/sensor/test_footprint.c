@@ -66,7 +66,7 @@ static void on_a_plain(void **state)
     const View       view = view_at(2100, true, 30);
     const double     across = tan(10 * rad_per_deg), below = 0.75 * across, c = cos(30 * rad_per_deg);
     static const int side[FOOTPRINT_COUNT][2] = {{0, 0}, {-1, -1}, {1, -1}, {1, 1}, {-1, 1}}; /* right, down */
-    truth_footprint(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &(RenderRequest){.view = view});
     for (int k = 0; k < FOOTPRINT_COUNT; k++) {
         /* per unit along the boresight: falls by sin 30 + y cos 30, goes on by cos 30 - y sin 30 */
         const double x = side[k][0] * across, y = side[k][1] * below;
@@ -89,7 +89,7 @@ static void the_nearer_ground_counts(void **state)
     GroundPoint out[FOOTPRINT_COUNT];
     double      p_enu[3];
     const View  view = view_at(600, false, 1); /* towards the wall: its foot is 3.5 km away, its top at 1000 m */
-    truth_footprint(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &(RenderRequest){.view = view});
     enu_of(p_enu, &out[FOOTPRINT_CENTRE]);
     CHECK(p_enu[0] > 3500 && p_enu[0] < 4000 && p_enu[2] > 500);
 }
@@ -99,15 +99,15 @@ static void none_above_the_horizon(void **state)
     (void)state;
     GroundPoint out[FOOTPRINT_COUNT];
     View        view = view_at(600, true, 0);
-    truth_footprint(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &(RenderRequest){.view = view});
     CHECK(!out[FOOTPRINT_UPPER_LEFT].known && !out[FOOTPRINT_UPPER_RIGHT].known && !out[FOOTPRINT_CENTRE].known);
     CHECK(out[FOOTPRINT_LOWER_LEFT].known && out[FOOTPRINT_LOWER_RIGHT].known);
     view = view_at(50, true, 30); /* below the ground */
-    truth_footprint(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &(RenderRequest){.view = view});
     for (int k = 0; k < FOOTPRINT_COUNT; k++) CHECK(!out[k].known);
     const World none = {.frame = lab.world.frame};
     view = view_at(2100, true, 30);
-    truth_footprint(out, &none, &view);
+    truth_footprint(out, &none, &(RenderRequest){.view = view});
     for (int k = 0; k < FOOTPRINT_COUNT; k++) CHECK(!out[k].known);
 }
 
@@ -119,10 +119,10 @@ static void through_a_lens(void **state)
     GroundPoint         plain[FOOTPRINT_COUNT], out[FOOTPRINT_COUNT];
     View                view = view_at(2100, true, 30);
     const double        k[3] = {-0.8, 0.1, 0}, p[2] = {0.002, -0.001};
-    truth_footprint(plain, &lab.world, &view);
+    truth_footprint(plain, &lab.world, &(RenderRequest){.view = view});
     assert_int_equal(view_lens_make(&view.lens, k, p, (double[2]){320 / view.focal_px, 240 / view.focal_px}),
                      STATUS_OK);
-    truth_footprint(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &(RenderRequest){.view = view});
     for (int n = 0; n < FOOTPRINT_COUNT; n++) {
         double p_enu[3], d_enu[3], p_cam[3], image_px[2];
         enu_of(p_enu, &out[n]);

@@ -41,6 +41,23 @@ static void the_sun_of_nrels_example(void **state)
         asked("sun", "utc,lat_deg,lon_deg,h_m,pressure_mbar,temp_c\n2003-10-17,39,-105,0,820,11\n", "zenith_deg")));
 }
 
+/* From 100 m: dip 17.97', horizon 38.26 km, of a ship at 44 km 2.25 m hidden and 19.70 m raised (k 1.149, R 6371 km:
+ * sqrt(2 k R h), (d - 38.26 km)^2 / 2kR, (1 - 1/k) d^2 / 2R); radar 15.1 % farther than a vacuum's 35.70: 41.22 km. The
+ * air between 0 and 100 m bends half a per cent less than that at the ground. */
+static void the_horizon_of_100_m(void **state)
+{
+    (void)state;
+    static const char row[] = "eye_m,range_m\n100,44000\n";
+    CHECK_NEAR(asked("horizon", row, "dip_deg") * 60, 17.97, 0.01);
+    CHECK_NEAR(asked("horizon", row, "horizon_m"), 38263, 20);
+    CHECK_NEAR(asked("horizon", row, "hidden_m"), 2.248, 0.02);
+    CHECK_NEAR(asked("horizon", row, "raised_m"), 19.70, 0.1);
+    CHECK_NEAR(asked("horizon", row, "radar_horizon_m"), 41218, 70);
+    CHECK_NEAR(asked("horizon", row, "radar_raised_m"), 37.98, 0.3);
+    CHECK(asked("horizon", "eye_m,range_m\n100,30000\n", "hidden_m") == 0);
+    CHECK(isnan(asked("horizon", "eye_m,range_m\n-1,30000\n", "dip_deg")));
+}
+
 static void the_geoid_of_ngas_example(void **state)
 {
     (void)state;
@@ -69,6 +86,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_sun_of_nrels_example),
+        cmocka_unit_test(the_horizon_of_100_m),
         cmocka_unit_test(the_geoid_of_ngas_example),
         cmocka_unit_test(geodesy_goes_both_ways),
     };

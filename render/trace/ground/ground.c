@@ -74,7 +74,7 @@ void ground_ray(GroundRay *out, const Ground *ground, const double o[3], const d
 
     int inner = ground->level_count; /* innermost level that the ray passes */
     for (; inner > 0; inner--) {
-        ground_level_ray(&out->of_level[inner - 1], &ground->level[inner - 1], o, d);
+        ground_level_ray(&out->of_level[inner - 1], &ground->level[inner - 1], ground->bend_per_m, o, d);
         if (!level_interval(&out->of_level[inner - 1], &ground->level[inner - 1])) break;
     }
     if (inner == ground->level_count) return;
@@ -104,7 +104,8 @@ static double level_first_hit(GroundHit *hit, const GroundLevel *g, const LevelR
         const double at_u = (line_u - r->u0) * r->per_du, at_v = (line_v - r->v0) * r->per_dv;
         double       next = at_u < at_v ? at_u : at_v;
         next = next < r->last_m ? next : r->last_m;
-        const double  lowest = r->w0 + (r->dw < 0 ? next : t) * r->dw;
+        const double  here = ground_ray_height(r, t), there = ground_ray_height(r, next);
+        const double  lowest = here < there ? here : there;
         const int32_t highest = k > 0 ? ground_highest(g, k, node_i, node_j) : ground_cell_highest(g, i, j);
         if (!(lowest > highest + ground_clear_posts)) {
             if (k > 0) {

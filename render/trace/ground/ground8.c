@@ -9,7 +9,7 @@ enum { lanes = 8 };
 
 /* State of the lanes: all that a step reads and writes. */
 typedef struct Walk {
-    double u0[lanes], v0[lanes], w0[lanes], du[lanes], dv[lanes], dw[lanes], per_du[lanes], per_dv[lanes];
+    double u0[lanes], v0[lanes], w0[lanes], du[lanes], dv[lanes], dw[lanes], bend[lanes], per_du[lanes], per_dv[lanes];
     double east[lanes], north[lanes];    /* 1 where the ray goes that way, else 0 */
     double last_u[lanes], last_v[lanes]; /* last cell */
     double top[lanes], last_m[lanes], stop_m[lanes];
@@ -38,7 +38,7 @@ static inline F64x4 look_up(F64x4 node_i, F64x4 node_j, F64x4 k, const GroundLev
 static inline Seen look(const Walk *w, int l, const GroundLevel *const level[4])
 {
     const F64x4 t = f64x4_load(w->t_m + l), size = f64x4_load(w->size + l), per_size = f64x4_load(w->per_size + l);
-    const F64x4 dw = f64x4_load(w->dw + l);
+    const F64x4 w0 = f64x4_load(w->w0 + l), dw = f64x4_load(w->dw + l), bend = f64x4_load(w->bend + l);
     Seen        s;
     s.node_i = f64x4_floor(f64x4_load(w->i + l) * per_size);
     s.node_j = f64x4_floor(f64x4_load(w->j + l) * per_size);
@@ -46,7 +46,7 @@ static inline Seen look(const Walk *w, int l, const GroundLevel *const level[4])
     s.at_u = ((s.node_i + f64x4_load(w->east + l)) * size - f64x4_load(w->u0 + l)) * f64x4_load(w->per_du + l);
     s.at_v = ((s.node_j + f64x4_load(w->north + l)) * size - f64x4_load(w->v0 + l)) * f64x4_load(w->per_dv + l);
     s.next_m = f64x4_min(f64x4_min(s.at_u, s.at_v), f64x4_load(w->last_m + l));
-    const F64x4 lowest = f64x4_load(w->w0 + l) + f64x4_select(dw, s.next_m, t) * dw;
+    const F64x4 lowest = f64x4_min(w0 + t * (dw - t * bend), w0 + s.next_m * (dw - s.next_m * bend));
     s.clear = f64x4_less(highest + f64x4_set(ground_clear_posts), lowest);
     return s;
 }
@@ -106,7 +106,7 @@ typedef struct Stream {
 static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, double start_m, double stop_m, int k)
 {
     w->u0[l] = r->u0, w->v0[l] = r->v0, w->w0[l] = r->w0;
-    w->du[l] = r->du, w->dv[l] = r->dv, w->dw[l] = r->dw;
+    w->du[l] = r->du, w->dv[l] = r->dv, w->dw[l] = r->dw, w->bend[l] = r->bend;
     w->per_du[l] = r->per_du, w->per_dv[l] = r->per_dv;
     w->east[l] = r->per_du > 0, w->north[l] = r->per_dv > 0;
     w->last_u[l] = g->cells_x - 1, w->last_v[l] = g->cells_y - 1;

@@ -22,7 +22,8 @@ static const double sure_posts = 1e-3, sure_steep_posts = 65536, sure_cells = 1e
 
 /* Four rays over one level: LevelRay, and their positions. */
 typedef struct Rays4 {
-    F64x4   u0, v0, w0, du, dv, dw, per_du, per_dv, per_duv, first_m, last_m, stop_m;
+    F64x4   u0, v0, w0, du, dv, dw, bend, per_du, per_dv, per_duv, first_m, last_m, stop_m;
+    F64x4   least_dw;                           /* no steeper descent, or flatter rise, over this level */
     F64x4   t_m, i, j, on;                      /* on: mask of the active rays; i, j: cell or node */
     F64x4   gone;                               /* mask: above everything for good, or as far as was requested */
     __m256i u_way, v_way;                       /* shift of their bits in an ElevationRise */
@@ -55,20 +56,27 @@ static inline void interval(F64x4 *first_m, F64x4 *last_m, F64x4 u0, F64x4 v0, F
     *last_m = f64x4_min(u_out, v_out);
 }
 
-static inline void level_rays(Rays4 *r, const GroundLevel *g, const double *const o[3], const double *const d[3], int n)
+static inline void level_rays(Rays4 *r, const GroundLevel *g, double bend_per_m, const double *const o[3],
+                              const double *const d[3], int n)
 {
+    const F64x4 dx = f64x4_loadu(d[0] + n), dy = f64x4_loadu(d[1] + n);
     r->u0 = (f64x4_loadu(o[0] + n) - f64x4_set(g->x0_m)) * f64x4_set(g->cells_per_m);
     r->v0 = (f64x4_loadu(o[1] + n) - f64x4_set(g->y0_m)) * f64x4_set(g->cells_per_m);
     r->w0 = (f64x4_loadu(o[2] + n) - f64x4_set(g->z0_m)) * f64x4_set(g->posts_per_m);
-    r->du = f64x4_loadu(d[0] + n) * f64x4_set(g->cells_per_m);
-    r->dv = f64x4_loadu(d[1] + n) * f64x4_set(g->cells_per_m);
+    r->du = dx * f64x4_set(g->cells_per_m);
+    r->dv = dy * f64x4_set(g->cells_per_m);
     r->dw = f64x4_loadu(d[2] + n) * f64x4_set(g->posts_per_m);
+    r->bend = f64x4_set(bend_per_m) * (dx * dx + dy * dy) * f64x4_set(g->posts_per_m);
     r->per_du = inverse_across(r->du, r->u0, g->cells_x);
     r->per_dv = inverse_across(r->dv, r->v0, g->cells_y);
     const F64x4 across = r->dv - r->du;
     r->per_duv = inverse_or(across, f64x4_or(f64x4_set(1e30), f64x4_and(f64x4_set(-0.0), across)));
     interval(&r->first_m, &r->last_m, r->u0, r->v0, r->per_du, r->per_dv, g);
+    r->least_dw = r->dw - f64x4_set(2) * r->bend * f64x4_max(r->last_m, f64x4_set(0));
 }
+
+/* ground_ray_height, four times. */
+static inline F64x4 height_at(const Rays4 *r, F64x4 t) { return r->w0 + t * (r->dw - t * r->bend); }
 
 /* ground_ray's conditions. */
 static inline F64x4 usable(const double *const o[3], const double *const d[3], const double *far_m, int n)
@@ -157,8 +165,7 @@ static inline void cell(Rays4 *r, const GroundLevel *g)
     t[2] = f64x4_min(f64x4_min(u_out, v_out), r->last_m);
     /* a ray whose lower end is above the highest of the four posts is above the rest */
     const F64x4 highest = f64x4_max(f64x4_max(sw, se), f64x4_max(nw, ne));
-    const F64x4 low_end = f64x4_select(r->dw, f64x4_max(t[0], t[2]), f64x4_min(t[0], t[2]));
-    const F64x4 clearance = r->w0 + low_end * r->dw - highest;
+    const F64x4 clearance = f64x4_min(height_at(r, t[0]), height_at(r, t[2])) - highest;
     const F64x4 unclear = f64x4_and_not(r->on, f64x4_less(f64x4_set(ground_clear_posts), clearance));
     F64x4       meets = f64x4_set(0), at_end = clearance; /* posts above the ground at the exit, or fewer */
     if (f64x4_bits(unclear)) {
@@ -173,7 +180,7 @@ static inline void cell(Rays4 *r, const GroundLevel *g)
             const F64x4 south_side = f64x4_at_most(b, a);
             const F64x4 z =
                 sw + a * f64x4_select(south_side, east_s, east_n) + b * f64x4_select(south_side, north_s, north_n);
-            clear[p] = r->w0 + t[p] * r->dw - z;
+            clear[p] = height_at(r, t[p]) - z;
         }
         const F64x4 above = f64x4_and(f64x4_less(zero, f64x4_min(clear[0], clear[1])), f64x4_less(zero, clear[2]));
         meets = f64x4_and_not(r->on, above);
@@ -228,7 +235,7 @@ static inline F64x4 node(Rays4 *r, const GroundLevel *g, int k, bool steep)
             _mm_add_epi32(_mm_set1_epi32(g->pyramid_base), _mm_sll_epi32(entry, _mm_cvtsi32_si128(g->pyramid_shift))));
     const F64x4 at_u = ((r->i + east) * size - r->u0) * r->per_du, at_v = ((r->j + north) * size - r->v0) * r->per_dv;
     const F64x4 next = f64x4_min(f64x4_min(at_u, at_v), r->last_m);
-    const F64x4 lowest = r->w0 + f64x4_select(r->dw, next, r->t_m) * r->dw;
+    const F64x4 lowest = f64x4_min(height_at(r, r->t_m), height_at(r, next));
     F64x4       clear = f64x4_less(highest + f64x4_set(ground_clear_posts), lowest);
     const F64x4 sure = f64x4_less(highest + r->sure, lowest);
     F64x4       outrun = f64x4_set(0);
@@ -243,7 +250,7 @@ static inline F64x4 node(Rays4 *r, const GroundLevel *g, int k, bool steep)
         const F64x4 rise_u = _mm256_castsi256_pd(_mm256_or_si256(by_u, _mm256_castpd_si256(magic))) - magic;
         const F64x4 rise_v = _mm256_castsi256_pd(_mm256_or_si256(by_v, _mm256_castpd_si256(magic))) - magic;
         const F64x4 ground = (rise_u * f64x4_abs(r->du) + rise_v * f64x4_abs(r->dv)) * f64x4_set(g->rise_unit);
-        outrun = f64x4_and(r->above, f64x4_less(ground + f64x4_set(1e-9), r->dw));
+        outrun = f64x4_and(r->above, f64x4_less(ground + f64x4_set(1e-9), r->least_dw));
         clear = f64x4_or(clear, outrun);
     }
     clear = f64x4_and(clear, r->on);
@@ -298,6 +305,27 @@ static double above_all(const Ground *ground, const GroundLevel *g)
     return above + 1e-2;
 }
 
+/* From where on bent rays that rise are above everything, if they still are at the farthest edge of the ground;
+ * INFINITY: they are not, or not for good. */
+static inline F64x4 above_from(const Rays4 *r, const Ground *ground, const double *const o[3], const double *const d[3],
+                               double above, int n)
+{
+    const GroundLevel *all = &ground->level[ground->level_count - 1];
+    const double       low[2] = {all->x0_m, all->y0_m}, cells[2] = {all->cells_x, all->cells_y};
+    F64x4              square = f64x4_set(0), way = f64x4_set(0);
+    for (int c = 0; c < 2; c++) {
+        const F64x4 p = f64x4_loadu(o[c] + n), q = f64x4_loadu(d[c] + n);
+        const F64x4 side =
+            f64x4_max(f64x4_abs(p - f64x4_set(low[c])), f64x4_abs(p - f64x4_set(low[c] + cells[c] / all->cells_per_m)));
+        square = square + side * side, way = way + q * q;
+    }
+    const F64x4 edge_m = f64x4_sqrt(square / way), over = f64x4_set(above) - r->w0;
+    const F64x4 root = f64x4_sqrt(r->dw * r->dw - f64x4_set(4) * r->bend * over);
+    const F64x4 up_m = f64x4_set(2) * over / (r->dw + root);
+    const F64x4 stays = f64x4_and(f64x4_less(f64x4_set(above), height_at(r, edge_m)), f64x4_less(up_m, edge_m));
+    return f64x4_select(stays, up_m, f64x4_set(INFINITY));
+}
+
 /* 16 where the mask says so, else 0. */
 static inline __m256i bits_16(F64x4 mask)
 {
@@ -309,13 +337,13 @@ static inline void begin(Rays4 *r, const Ground *ground, int level, const double
                          const double *far_m, const double *from_m, double above, int n)
 {
     const GroundLevel *g = &ground->level[level];
-    level_rays(r, g, o, d, n);
+    level_rays(r, g, ground->bend_per_m, o, d, n);
     F64x4 good = f64x4_and(usable(o, d, far_m, n),
                            f64x4_and(f64x4_less(r->first_m, r->last_m), f64x4_less(r->first_m, f64x4_set(farthest_m))));
     if (level + 1 < ground->level_count) good = f64x4_and(good, f64x4_at_most(r->first_m, f64x4_set(0)));
     if (level > 0) { /* as far as the level inside */
         Rays4 inner;
-        level_rays(&inner, g - 1, o, d, n);
+        level_rays(&inner, g - 1, 0, o, d, n);
         r->last_m =
             f64x4_select(f64x4_less(inner.first_m, inner.last_m), f64x4_min(inner.first_m, r->last_m), r->last_m);
     }
@@ -330,8 +358,9 @@ static inline void begin(Rays4 *r, const Ground *ground, int level, const double
     /* rising, it is above everything from `above` on, if that is near enough to be exact; far_m limits the search */
     const F64x4 rises =
         f64x4_and(f64x4_less(f64x4_set(1e-12), r->dw), f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
-    r->stop_m =
-        f64x4_min(f64x4_select(rises, (f64x4_set(above) - r->w0) / r->dw, f64x4_set(INFINITY)), f64x4_loadu(far_m + n));
+    F64x4 up_m = (f64x4_set(above) - r->w0) / r->dw;
+    if (ground->bend_per_m > 0) up_m = above_from(r, ground, o, d, above, n);
+    r->stop_m = f64x4_min(f64x4_select(rises, up_m, f64x4_set(INFINITY)), f64x4_loadu(far_m + n));
     const F64x4 from = f64x4_loadu(from_m + n);
     r->t_m = f64x4_select(good, f64x4_max(r->first_m, from), from);
     r->on = f64x4_and(good, f64x4_less(r->t_m, r->last_m));

@@ -1,11 +1,11 @@
 /* render/trace/ground/ground_private.h: the arithmetic that the scalar and the eight-wide ground tracer share.
  *
- * In the units of one level a ray is u0 + t du, v0 + t dv (cells), w0 + t dw (posts), t in metres. It meets the line
- * of posts u = e at t = (e - u0) / du: a value that does not depend on the path of traversal and never decreases in
- * the order of the lines, not even by rounding. So "the cell at t" is found by counting the lines met at or before
- * t, a cell's interval is the same from whichever side it is reached, and the height w0 + t dw inside it lies
- * between those at the ends of any interval that contains it. Skipping a node whose highest post is below the ray's
- * lower end is then exact, not only conservative. */
+ * In the units of one level a ray is u0 + t du, v0 + t dv (cells), w0 + t (dw - t bend) (posts), t in metres. It meets
+ * the line of posts u = e at t = (e - u0) / du: a value that does not depend on the path of traversal and never
+ * decreases in the order of the lines, not even by rounding. So "the cell at t" is found by counting the lines met at
+ * or before t, a cell's interval is the same from whichever side it is reached, and the height inside it is no lower
+ * than at one of the ends of any interval that contains it. Skipping a node whose highest post is below the ray's lower
+ * end is then exact, not only conservative (of a bent ray to far below ground_clear_posts). */
 #ifndef RENDER_TRACE_GROUND_GROUND_PRIVATE_H
 #define RENDER_TRACE_GROUND_GROUND_PRIVATE_H
 
@@ -21,7 +21,7 @@ static const double ground_clear_posts = 1e-6;
 static const double farthest_m = 1e10;
 
 typedef struct LevelRay {
-    double u0, v0, w0, du, dv, dw;
+    double u0, v0, w0, du, dv, dw, bend;
     double per_du, per_dv, per_duv; /* 1 / du, 1 / dv, 1 / (dv - du); never infinite */
     double first_m, last_m;         /* the piece of the ray over this level */
 } LevelRay;
@@ -36,7 +36,8 @@ static inline double ground_inverse_across(double d, double p0, double cells)
     return fabs(d) < 1e-30 ? p0 < cells ? 1e30 : -1e30 : 1 / d;
 }
 
-static inline void ground_level_ray(LevelRay *r, const GroundLevel *g, const double o_enu[3], const double d_enu[3])
+static inline void ground_level_ray(LevelRay *r, const GroundLevel *g, double bend_per_m, const double o_enu[3],
+                                    const double d_enu[3])
 {
     r->u0 = (o_enu[0] - g->x0_m) * g->cells_per_m;
     r->v0 = (o_enu[1] - g->y0_m) * g->cells_per_m;
@@ -44,10 +45,14 @@ static inline void ground_level_ray(LevelRay *r, const GroundLevel *g, const dou
     r->du = d_enu[0] * g->cells_per_m;
     r->dv = d_enu[1] * g->cells_per_m;
     r->dw = d_enu[2] * g->posts_per_m;
+    r->bend = bend_per_m * (d_enu[0] * d_enu[0] + d_enu[1] * d_enu[1]) * g->posts_per_m;
     r->per_du = ground_inverse_across(r->du, r->u0, g->cells_x);
     r->per_dv = ground_inverse_across(r->dv, r->v0, g->cells_y);
     r->per_duv = ground_inverse(r->dv - r->du);
 }
+
+/* Height of a ray at t, posts. */
+static inline double ground_ray_height(const LevelRay *r, double t) { return r->w0 + t * (r->dw - t * r->bend); }
 
 /* A ray over all the levels: its pieces in the order in which it meets them, inwards and out again. */
 enum { ground_max_pieces = 2 * elevation_max_levels - 1 };
@@ -61,12 +66,34 @@ typedef struct GroundRay {
 
 void ground_ray(GroundRay *out, const Ground *ground, const double o_enu[3], const double d_enu[3], double far_m);
 
+/* ground_walk of a bent ray: it comes down to the highest post from above, or stays above it once it has risen so
+ * far. */
+static inline void ground_walk_bent(double *start_m, double *stop_m, const GroundLevel *g, const LevelRay *r)
+{
+    const double over = r->w0 - (g->highest + 1e-3), square = r->dw * r->dw + 4 * r->bend * over;
+    const double clear = g->highest + ground_clear_posts;
+    if (!(square >= 0)) return;
+    const double root = sqrt(square);
+    if (over > 0) {
+        const double down_m = r->dw > 0 ? (r->dw + root) / (2 * r->bend) : 2 * over / (root - r->dw);
+        if (ground_ray_height(r, down_m) > clear && down_m > *start_m) *start_m = down_m;
+    } else if (r->dw > 0) {
+        const double up_m = -2 * over / (root + r->dw);
+        if (up_m < *stop_m && ground_ray_height(r, up_m) > clear && ground_ray_height(r, *stop_m) > clear)
+            *stop_m = up_m;
+    }
+}
+
 /* Interval of traversal of a piece: from where the ray has come down to the level's highest post to where it has
  * left it upwards. Never part of a hit's arithmetic. */
 static inline void ground_walk(double *start_m, double *stop_m, const GroundLevel *g, const LevelRay *r, double far_m)
 {
     *start_m = r->first_m;
     *stop_m = r->last_m < far_m ? r->last_m : far_m;
+    if (r->bend > 0) {
+        ground_walk_bent(start_m, stop_m, g, r);
+        return;
+    }
     const double top_m = (g->highest + 1e-3 - r->w0) * ground_inverse(r->dw);
     if (!(r->w0 + top_m * r->dw > g->highest + ground_clear_posts)) return; /* too far away to be exact */
     if (r->dw < 0) *start_m = *start_m > top_m ? *start_m : top_m;
@@ -171,7 +198,7 @@ static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, in
         a = a < 1 ? a : 1;
         b = b < 1 ? b : 1;
         const double south_east = sw + a * (se - sw) + b * (ne - se), north_side = sw + a * (ne - nw) + b * (nw - sw);
-        clear[p] = r->w0 + t[p] * r->dw - (a >= b ? south_east : north_side);
+        clear[p] = ground_ray_height(r, t[p]) - (a >= b ? south_east : north_side);
     }
     const double lowest = clear[0] < clear[1] ? clear[0] : clear[1];
     if (lowest > 0 && clear[2] > 0) return INFINITY;

@@ -6,7 +6,7 @@
  * The hit itself is computed elsewhere (see ground_private.h), so that the start only must not be too late.
  *
  * Distances a are along the axis that the tracks mostly follow. A ray is at c0 + m a across it and at the height w0
- * + q a. Strips and slopes hold for every level: m is in metres per metre. */
+ * + q a, less bend (1 + m^2) a^2 of a bent ray. Strips and slopes hold for every level: m is in metres per metre. */
 
 #include "render/trace/ground/ground_private.h"
 
@@ -21,6 +21,7 @@ static const double near_cells = 1e6, near_posts = 1e8, room_posts = 1e-3, room_
 typedef struct Strip {
     int    count;
     double m_low, m_high, q_low, q_high;
+    double bend_per_m;              /* at least that of all of them, by a */
     double per_bucket, buckets_per; /* of q: bucket b holds rays of q_low + b per_bucket and more */
     double start_m[buckets];        /* a */
 } Strip;
@@ -76,6 +77,13 @@ static int highest_between(const GroundLevel *g, const Axis *axis, int k, int ro
     return g->pyramid_base + (highest << g->pyramid_shift);
 }
 
+/* The lowest height of rays of a slope between two a, over the eye's: at one of the two. */
+static inline double lowest_between(double q, double bend, double a, double next)
+{
+    const double here = a * (q - a * bend), there = next * (q - next * bend);
+    return here < there ? here : there;
+}
+
 /* Reduces the strip's start distances to where this level's rows may block it, searching from a on. */
 static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double a)
 {
@@ -83,6 +91,7 @@ static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double
     const double at_low = (0 - axis->a0) * sign, at_high = (axis->a_cells - axis->a0) * sign;
     const double end = fmax(at_low, at_high), posts_per_cell = g->posts_per_m / g->cells_per_m;
     const double q_low = (s->q_low - 1e-12 * fabs(s->q_low)) * posts_per_cell, q_step = s->per_bucket * posts_per_cell;
+    const double bend = s->bend_per_m * g->posts_per_m / (g->cells_per_m * g->cells_per_m);
     a = fmax(fmax(fmin(at_low, at_high), a), 0);
     int    cell = (int)clamp(floor(axis->a0 + sign * a), 0, axis->a_cells - 1);
     int    b = 0, k = g->top < 6 ? g->top : 6;
@@ -94,7 +103,7 @@ static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double
         const double c_high = axis->c0 + s->m_high * (s->m_high > 0 ? next : a) + room_cells;
         const int    highest = highest_between(g, axis, k, row, c_low, c_high);
         const double limit = highest + room_posts - axis->w0;
-        if (highest != nothing_there && !(q * (q < 0 ? next : a) > limit)) {
+        if (highest != nothing_there && !(lowest_between(q, bend, a, next) > limit)) {
             /* nodes half as wide as the strip are fine enough */
             if (k > elevation_pyramid_first && 2 * (1 << k) > (s->m_high - s->m_low) * next) {
                 k--;
@@ -105,7 +114,7 @@ static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double
                 s->start_m[b] = start_m < s->start_m[b] ? start_m : s->start_m[b];
                 if (++b == buckets) return;
                 q = q_low + b * q_step;
-            } while (!(q * (q < 0 ? next : a) > limit));
+            } while (!(lowest_between(q, bend, a, next) > limit));
         }
         a = next;
         cell = axis->forward ? (row + 1) << k : (row << k) - 1;
@@ -118,6 +127,7 @@ static void sweep_strip(Strip *s, const Ground *ground, const double o_enu[3], b
     s->buckets_per = s->q_high > s->q_low ? buckets * (1 - room_relative) / (s->q_high - s->q_low) : 0;
     s->per_bucket = s->q_high > s->q_low ? 1 / s->buckets_per : 0;
     for (int b = 0; b < buckets; b++) s->start_m[b] = INFINITY;
+    s->bend_per_m = ground->bend_per_m * (1 + fmax(s->m_low * s->m_low, s->m_high * s->m_high)) * (1 + room_relative);
     double from_m = 0; /* up to here an inner level has been processed */
     for (int n = 0; n < ground->level_count && !(s->start_m[buckets - 1] <= from_m); n++) {
         const GroundLevel *g = &ground->level[n];

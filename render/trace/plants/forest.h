@@ -42,7 +42,8 @@ typedef struct ForestFrame {
     double        low_reach_m; /* low plants stand within this of the eye; 0: none */
     double        t_s;         /* exercise time, for sway */
     double        wind_mps[2]; /* east, north: towards which it blows */
-    void         *low;         /* private: squares of low plants, of the arena */
+    double bend_per_m; /* first hits are of rays from the eye that bend (terrain/earth/refraction.h); 0: straight */
+    void  *low;        /* private: squares of low plants, of the arena */
 } ForestFrame;
 
 /* Low plants of the squares about the eye are made here, by pool (NULL: one thread). forest_frame_close before the

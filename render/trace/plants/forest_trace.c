@@ -26,7 +26,8 @@ typedef struct ListRay {
     const ForestFrame         *frame;
     bool                       real;
     double                     o_enu[3], d_enu[3];
-    double                     limit_m; /* of what may still be nearer */
+    double                     limit_m;             /* of what may still be nearer */
+    double                     bend_per_m, piece_m; /* of a bent ray; where the piece that Embree has begins */
     bool                       met;
     uint64_t                   entered; /* plants' boxes */
     ForestHit                  hit;
@@ -84,76 +85,6 @@ static void to_prototype(double out[3], const double axis[3][3], const double pe
     out[2] = v3_dot(axis[2], v_enu) * per[1];
 }
 
-/* The azimuth of the table at or before that of a vector. An arctangent within 0.005 rad, a twentieth of the table's
- * step, leaves it within one of that; which side of it the vector is on says the rest. */
-static int azimuth_before(const double (*azimuth)[2], double x, double y)
-{
-    const double wide = fabs(x), high = fabs(y), most = wide > high ? wide : high, least = wide > high ? high : wide;
-    const double a = most > 0 ? least / most : 0, near_rad = a * (0.9724 - 0.1919 * a * a);
-    const double quarter = wide > high ? near_rad : 0.5 * pi_rad - near_rad, half = x < 0 ? pi_rad - quarter : quarter;
-    const double turn = y < 0 ? 2 * pi_rad - half : half;
-    int          k = (int)(turn * (shape_azimuths / (2 * pi_rad))) % shape_azimuths;
-    if (azimuth[k][0] * y - azimuth[k][1] * x < 0) k = (k + shape_azimuths - 1) % shape_azimuths;
-    else if (azimuth[k + 1][1] * x - azimuth[k + 1][0] * y < 0) k = (k + 1) % shape_azimuths;
-    return k;
-}
-
-/* How far a shape reaches along a vector of its axes, at most. The reach between two azimuths is no more than the mix
- * of theirs that makes up the vector, since the reach along a sum of vectors is at most the sum of those along them.
- */
-static double reach_along(const ShapeScene *shape, const double along[3])
-{
-    static const double per_sine = 1 / 0.098017140329560602; /* of 2 pi / shape_azimuths */
-    _Static_assert(shape_azimuths == 64, "its sine");
-    const double  x = along[0], y = along[1];
-    const int     k = azimuth_before(shape->azimuth, x, y);
-    const double *low = shape->azimuth[k], *high = shape->azimuth[k + 1];
-    const double  mix =
-        (shape->reach[k] * (high[1] * x - high[0] * y) + shape->reach[k + 1] * (low[0] * y - low[1] * x)) * per_sine;
-    const double up = along[2] * (shape->centre[2] + shape->half[2]),
-                 down = along[2] * (shape->centre[2] - shape->half[2]);
-    return mix + 1e-4 * sqrt(x * x + y * y) + (up > down ? up : down);
-}
-
-/* An upper bound of the same reach from the shape's box, which is cheaper. */
-static double box_along(const ShapeScene *shape, const double along[3])
-{
-    double reach = 0;
-    for (int c = 0; c < 3; c++) reach += along[c] * shape->centre[c] + fabs(along[c]) * shape->half[c];
-    return reach;
-}
-
-/* Tight boxes cost as much as a ray each: worth it for those that stand for many frames. */
-void plant_box(const struct RTCBoundsFunctionArguments *a)
-{
-    static const double room_m = 0.02; /* of a float 16 km from the origin, twenty times */
-    const PlantList    *list = a->geometryUserPtr;
-    const Plant        *plant = &list->plant[a->primID];
-    const ShapeScene   *level[plant_levels] = {&list->forest->shape[plant->kind][0],
-                                               &list->forest->shape[plant->kind][1]};
-    const double        swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
-    double              m[9], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    float              *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
-    plant_transform(m, plant, NULL);
-    double (*const reach)(const ShapeScene *, const double[3]) = list->frame ? box_along : reach_along;
-    for (int l = 0; l < plant_levels; l++) {
-        if (!level[l]->scene) continue;
-        for (int c = 0; c < 3; c++) {
-            const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
-            const double before = -reach(level[l], back) - room_m - swing_m,
-                         after = reach(level[l], along) + room_m + swing_m;
-            low[c] = before < low[c] ? before : low[c]; /* not fmin, which compiles to a call */
-            high[c] = after > high[c] ? after : high[c];
-        }
-    }
-    for (int c = 0; c < 3; c++) /* of a kind without quads */
-        if (!(low[c] <= high[c])) low[c] = high[c] = 0;
-    for (int c = 0; c < 3; c++) {
-        bound[0][c] = (float)((double)plant->p_m[c] + low[c]);
-        bound[1][c] = (float)((double)plant->p_m[c] + high[c]);
-    }
-}
-
 /* Does what to_prototype does, to the same bits. */
 static inline F64x4 turned(const PlantFrame *stands, double x, double y, double z)
 {
@@ -170,10 +101,12 @@ static bool enter_plant(QuadRay *q, double *start_m, ListRay *ray, const PlantLi
     double            low[4] __attribute__((aligned(32))), high[4] __attribute__((aligned(32)));
     q->shape = shape;
     if (!shape->scene) return false;
-    const F64x4 o = turned(stands, ray->o_enu[0] - stands->foot_enu[0], ray->o_enu[1] - stands->foot_enu[1],
-                           ray->o_enu[2] - stands->foot_enu[2]);
-    const F64x4 d = turned(stands, ray->d_enu[0], ray->d_enu[1], ray->d_enu[2]);
-    const F64x4 centre = f64x4_loadu(shape->centre), half = f64x4_loadu(shape->half), to = centre - o;
+    const double east_m = ray->o_enu[0] - stands->foot_enu[0], north_m = ray->o_enu[1] - stands->foot_enu[1];
+    /* a bent ray is as far below its straight line all over the plant */
+    const double drop_m = ray->bend_per_m * (east_m * east_m + north_m * north_m);
+    const F64x4  o = turned(stands, east_m, north_m, ray->o_enu[2] - stands->foot_enu[2] - drop_m);
+    const F64x4  d = turned(stands, ray->d_enu[0], ray->d_enu[1], ray->d_enu[2]);
+    const F64x4  centre = f64x4_loadu(shape->centre), half = f64x4_loadu(shape->half), to = centre - o;
     /* along a slab a and b are infinite: of different signs within it, of one sign beside it */
     const F64x4 inverse = f64x4_set(1) / d, a = (to - half) * inverse, b = (to + half) * inverse;
     f64x4_store(low, f64x4_min(a, b)), f64x4_store(high, f64x4_max(a, b));
@@ -333,7 +266,7 @@ void plant_intersect(const struct RTCIntersectFunctionNArguments *a)
         .back = (double)quad->n[0][0] * q.d[0] + (double)quad->n[0][1] * q.d[1] + (double)quad->n[0][2] * q.d[2] > 0};
     pass_of(&pass, &q, quad);
     place_of(ray->hit.uv, &pass, &q);
-    ((struct RTCRayHit *)a->rayhit)->ray.tfar = (float)(at_m * past);
+    ((struct RTCRayHit *)a->rayhit)->ray.tfar = (float)((at_m - ray->piece_m) * past);
 }
 
 void plant_occlude(const struct RTCOccludedFunctionNArguments *a)
@@ -369,6 +302,7 @@ static bool open_ray(ListRay *ray, const ForestFrame *frame, const double *const
     static const double most_m = 1e15;
     rtcInitIntersectContext(&ray->base);
     ray->frame = frame, ray->real = real, ray->limit_m = limit_m, ray->met = false;
+    ray->bend_per_m = ray->piece_m = 0;
     for (int c = 0; c < 3; c++) ray->o_enu[c] = o_enu[c][i], ray->d_enu[c] = d_enu[c][i];
     return v3_dot(ray->d_enu, ray->d_enu) < 2 &&
            fabs(ray->o_enu[0]) + fabs(ray->o_enu[1]) + fabs(ray->o_enu[2]) < most_m;
@@ -379,22 +313,71 @@ static void start_of(double o[3], const ListRay *ray, const PlantList *list)
     v3_sub(o, ray->o_enu, list->origin_enu);
 }
 
+static void first_hit_straight(ListRay *ray, const PlantList *list)
+{
+    struct RTCRayHit outer;
+    double           o[3];
+    start_of(o, ray, list);
+    fill_ray(&outer.ray, o, ray->d_enu, ray->limit_m * past);
+    outer.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(list->scene, &ray->base, &outer);
+}
+
+/* Ranges between which a ray is over a list's plants. */
+static bool over_plants(double span_m[2], const ListRay *ray, const struct RTCBounds *b, const double o[3])
+{
+    static const double farthest_m = 1e7;
+    const double low[2] = {(double)b->lower_x, (double)b->lower_y}, high[2] = {(double)b->upper_x, (double)b->upper_y};
+    span_m[0] = 0, span_m[1] = smaller(ray->limit_m, farthest_m);
+    for (int c = 0; c < 2; c++) {
+        const double d = ray->d_enu[c], per = fabs(d) < 1e-30 ? 1e30 : 1 / d;
+        const double p = (low[c] - 1 - o[c]) * per, q = (high[c] + 1 - o[c]) * per;
+        span_m[0] = larger(span_m[0], smaller(p, q)), span_m[1] = smaller(span_m[1], larger(p, q));
+    }
+    return span_m[0] < span_m[1];
+}
+
+/* In straight pieces, each within less of the ray than plants' boxes have room: a chord of 1.6 km is 13 mm off at most.
+ * A piece whose ends are above all plants is above them. */
+static void first_hit_bent(ListRay *ray, const PlantList *list, const struct RTCBounds *bounds)
+{
+    static const double piece_m = 1600, nearest = 1e-4;
+    const double        top_m = (double)bounds->upper_z + 1;
+    double              o[3], span_m[2];
+    start_of(o, ray, list);
+    if (!over_plants(span_m, ray, bounds, o)) return;
+    const double square = ray->d_enu[0] * ray->d_enu[0] + ray->d_enu[1] * ray->d_enu[1];
+    const double step_m = piece_m / larger(sqrt(square), nearest), fall = ray->bend_per_m * square;
+    for (double from_m = span_m[0]; from_m < smaller(span_m[1], ray->limit_m); from_m += step_m) {
+        struct RTCRayHit outer;
+        const double     to_m = smaller(from_m + step_m, span_m[1]);
+        const double     start[3] = {o[0] + from_m * ray->d_enu[0], o[1] + from_m * ray->d_enu[1],
+                                     o[2] + from_m * (ray->d_enu[2] - fall * from_m)};
+        const double     chord[3] = {ray->d_enu[0], ray->d_enu[1], ray->d_enu[2] - fall * (from_m + to_m)};
+        if (start[2] > top_m && o[2] + to_m * (ray->d_enu[2] - fall * to_m) > top_m) continue;
+        ray->piece_m = from_m;
+        fill_ray(&outer.ray, start, chord, (smaller(to_m, ray->limit_m) - from_m) * past);
+        outer.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(list->scene, &ray->base, &outer);
+    }
+}
+
 uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count,
                            const double *const o_enu[3], const double *const d_enu[3], const uint8_t *real)
 {
     const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
+    struct RTCBounds bounds[2];
     ListRay          ray;
+    for (int k = 0; k < 2; k++)
+        if (lists[k] && lists[k]->scene) rtcGetSceneBounds(lists[k]->scene, &bounds[k]);
     open_rays(&ray);
     for (int i = 0; i < count; i++) {
         if (!open_ray(&ray, frame, o_enu, d_enu, i, range_m[i], real && real[i])) continue;
+        ray.bend_per_m = frame->bend_per_m;
         for (int k = 0; k < 2; k++) {
-            struct RTCRayHit outer;
-            double           o[3];
             if (!lists[k] || !lists[k]->scene) continue;
-            start_of(o, &ray, lists[k]);
-            fill_ray(&outer.ray, o, ray.d_enu, ray.limit_m * past);
-            outer.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            rtcIntersect1(lists[k]->scene, &ray.base, &outer);
+            if (frame->bend_per_m > 0) first_hit_bent(&ray, lists[k], &bounds[k]);
+            else first_hit_straight(&ray, lists[k]);
         }
         if (!ray.met) continue;
         range_m[i] = ray.limit_m;

@@ -93,6 +93,8 @@ static void first_hit(Hits *hits, TraceBlock *block, const TraceEntry *only)
         for (int c = 0; c < 3; c++) hits->p_enu[c][i] = sky ? 0 : o[c][i] + hits->range_m[i] * d[c][i];
         for (int c = 0; c < 3 && sky; c++) hits->n_geo[c][i] = hits->n_enu[c][i] = 0;
     }
+    for (int i = 0; i < count && rays->bent; i++)
+        hits->p_enu[2][i] -= ray_drop(v, rays, i, block->met[i] ? hits->range_m[i] : 0);
     for (int place = 0; place < v->entries; place++) {
         const ListedEntry *entry = &v->entry[place];
         int                listed = 0;

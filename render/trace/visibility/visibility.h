@@ -74,6 +74,25 @@ typedef struct VisibilityCounters {
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
                          const Snapshot *snapshot, unsigned skips_off, Arena *arena);
 
+/* The same for an eye in air. Its rays (Rays.bent) sink below their straight lines (terrain/earth/refraction.h), and so
+ * do functions below that take a view; range_m is along the straight line, places of hits are where things are. An
+ * entity is raised as a whole, by what its origin is. All other rays are straight. */
+typedef struct VisibilityConfig {
+    Tracer           *tracer;
+    const Landscape  *ground;
+    const LocalFrame *frame;
+    const Snapshot   *snapshot;
+    unsigned          skips_off;
+    double            eye_enu[3], bend_per_m; /* 0: straight */
+} VisibilityConfig;
+
+Status visibility_create_seen(Visibility **out, const VisibilityConfig *config, Arena *arena);
+
+/* Its bend_per_m; how far things at a place are raised for the eye, m; and entity `index`. */
+double visibility_bend(const Visibility *v);
+double visibility_lift_at(const Visibility *v, const double p_enu[3]);
+double visibility_lift(const Visibility *v, int index);
+
 /* Entities of the snapshot, and their poses, each computed on first use (by any thread); its model is -1 where it
  * cannot be drawn (render/trace/parts/parts.h). */
 struct PosedEntity;

@@ -4,6 +4,7 @@
 
 typedef struct Walk {
     const Visibility *v;
+    const Rays       *of; /* first hits: the block's */
     BroadRays         rays;
     const double     *o[3], *d[3]; /* rays.o and rays.d */
     int               count;       /* of rays */
@@ -89,13 +90,17 @@ static void visit_first(void *user, int item)
         }
         return;
     }
-    rays_meet_sphere(ask, w->count, w->o, w->d, until_m, entity->centre_enu, entity->radius_m);
+    const double lift_m = lift_for(w->v, w->of, item);
+    const double centre[3] = {entity->centre_enu[0], entity->centre_enu[1], entity->centre_enu[2] + lift_m};
+    rays_meet_sphere(ask, w->count, w->o, w->d, until_m, centre, entity->radius_m);
     const int listed = list_rays(list, ask, w->count);
     if (listed == 0) return;
     for (int n = 0; n < listed; n++) nearer_m[list[n]] = INFINITY;
     w->counts->asked += (uint64_t)listed;
     w->counts->nodes += (uint64_t)listed * (uint64_t)entity->node_count;
-    w->counts->asked_nodes += parts_first_hits(nearer_m, w->hit, entity, w->o, w->d, until_m, list, listed,
+    double              z_m[broad_packet];
+    const double *const from[3] = {w->o[0], w->o[1], lowered(z_m, w->o[2], lift_m, list, listed)};
+    w->counts->asked_nodes += parts_first_hits(nearer_m, w->hit, entity, from, w->d, until_m, list, listed,
                                                !skips(w->v->skips_off, SKIP_PART));
     for (int n = 0; n < listed; n++) {
         const int k = list[n];
@@ -109,7 +114,7 @@ void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCoun
                       const int *order)
 {
     const int count = block->rays->count;
-    Walk      walk = {.v = block->v, .counts = counts, .among = *block->among};
+    Walk      walk = {.v = block->v, .of = block->rays, .counts = counts, .among = *block->among};
     for (int first = 0; first < count; first += broad_packet) {
         take_rays(&walk, block->o_enu, block->d_enu, order + first,
                   count - first < broad_packet ? count - first : broad_packet);

@@ -12,20 +12,31 @@ static void grow_box(double box[2][3], const double p[3])
     }
 }
 
-/* First hits with the ground, with the walk that is shared or without. Returns the rays that shared it. */
-static uint64_t ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
-                            const double *const d[3], const double *far_m)
+/* Rays of one list. */
+typedef struct GroundRays {
+    int                  count;
+    const double *const *o, *const *d;
+    const double *far_m;
+} GroundRays;
+
+/* First hits with the ground, straight or bent, with the walk that is shared or without. Returns the rays that shared
+ * it. */
+static uint64_t ground_hits(double *range_m, GroundHit *hit, const Visibility *v, const Ground *ground,
+                            const GroundRays *rays)
 {
     const bool together = skips(v->skips_off, SKIP_GROUND_WALK);
-    if (together) ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
-    else ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
-    return together ? (uint64_t)count : 0;
+    if (together) ground_first_hits_together(range_m, hit, ground, rays->count, rays->o, rays->d, rays->far_m);
+    else ground_first_hits(range_m, hit, ground, rays->count, rays->o, rays->d, rays->far_m);
+    return together ? (uint64_t)rays->count : 0;
 }
 
 /* Whether every ray met something, and all of the ground is below all of them up to there. */
-static bool ground_lies_below(const Visibility *v, const uint8_t *met, int count, const double *const o[3],
-                              const double *const d[3], const double *until_m)
+static bool ground_lies_below(const Visibility *v, const TraceBlock *block)
 {
+    const uint8_t             *met = block->met;
+    const double *const *const o = block->o_enu, *const *const d = block->d_enu;
+    const double *const until_m = block->limit_m;
+    const int           count = block->rays->count;
     for (int i = 0; i < count; i++)
         if (!met[i]) return false;
     for (int first = 0; first < count; first += clear_rays) {
@@ -36,6 +47,7 @@ static bool ground_lies_below(const Visibility *v, const uint8_t *met, int count
             const double p[3] = {o[0][i], o[1][i], o[2][i]}, way[3] = {d[0][i], d[1][i], d[2][i]};
             double       at[3];
             v3_add_scaled(at, p, until_m[i], way);
+            if (block->rays->bent) at[2] -= ray_drop(v, block->rays, i, until_m[i]); /* its chord is below the ray */
             grow_box(start, p);
             grow_box(end_box, at);
         }
@@ -53,13 +65,13 @@ static void ground_first(double *range_m, void *found, const TraceBlock *block, 
     (void)self;
     for (int i = 0; i < count; i++) counters->skipped[SKIP_GROUND_BEHIND] += behind && block->met[i];
     counters->rays_ground += (uint64_t)count;
-    if (skips(v->skips_off, SKIP_GROUND_BELOW) &&
-        ground_lies_below(v, block->met, count, block->o_enu, block->d_enu, block->limit_m)) {
+    if (skips(v->skips_off, SKIP_GROUND_BELOW) && ground_lies_below(v, block)) {
         for (int i = 0; i < count; i++) range_m[i] = INFINITY;
         counters->skipped[SKIP_GROUND_BELOW] += (uint64_t)count;
     } else {
-        counters->skipped[SKIP_GROUND_WALK] += ground_hits(range_m, found, v, count, block->o_enu, block->d_enu,
-                                                           behind ? block->limit_m : block->rays->far_m);
+        const GroundRays rays = {count, block->o_enu, block->d_enu, behind ? block->limit_m : block->rays->far_m};
+        counters->skipped[SKIP_GROUND_WALK] +=
+            ground_hits(range_m, found, v, block->rays->bent ? &v->seen : &v->ground, &rays);
     }
 }
 
@@ -108,9 +120,13 @@ static void ground_finish(Hits *hits, const int *list, int count, const void *fo
                           const void *self)
 {
     const Visibility *v = block->v;
-    double            x_m[hits_capacity], y_m[hits_capacity];
+    double            x_m[hits_capacity], y_m[hits_capacity], down[hits_capacity];
     (void)self;
-    complete_normals(hits, v, found, list, count, block->d_enu);
+    const double *const *d = block->d_enu, *const bent[3] = {d[0], d[1], down};
+    const double twice = 2 * v->seen.bend_per_m;
+    for (int i = 0; i < hits->count && block->rays->bent; i++) /* where a bent ray goes when it arrives */
+        down[i] = d[2][i] - twice * hits->range_m[i] * (d[0][i] * d[0][i] + d[1][i] * d[1][i]);
+    complete_normals(hits, v, found, list, count, block->rays->bent ? bent : d);
     for (int i = 0; i < hits->count; i++) x_m[i] = y_m[i] = NAN;
     for (int k = 0; k < count; k++) {
         const int i = list[k];
@@ -163,7 +179,8 @@ static void ground_any(const TraceShadow *s, const void *self)
         ray[left++] = i;
     }
     const double *const o[3] = {start[0], start[1], start[2]};
-    s->counters->skipped[SKIP_GROUND_WALK] += ground_hits(range_m, NULL, v, left, o, s->d_enu, far_m);
+    s->counters->skipped[SKIP_GROUND_WALK] +=
+        ground_hits(range_m, NULL, v, &v->ground, &(GroundRays){left, o, s->d_enu, far_m});
     for (int k = 0; k < left; k++) s->dark[ray[k]] |= range_m[k] < INFINITY;
     s->counters->rays_sun_ground += (uint64_t)lit;
 }

@@ -35,6 +35,7 @@ static int spheres_in_block(int *list, int count, const Visibility *v, const Vie
         const PosedEntity *entity = visibility_posed(v, k);
         double             from_eye[3], c_cam[3];
         v3_sub(from_eye, entity->centre_enu, view->p_enu);
+        from_eye[2] += visibility_lift(v, k);
         m3_tmul_v3(c_cam, view->r_enu_from_cam, from_eye);
         /* margin for rounding, a thousand times its maximum */
         const double r = entity->radius_m + 1e-6 + 1e-12 * v3_length(c_cam);
@@ -124,7 +125,7 @@ static void grow_by_bowed_edge(double box_px[4], const View *view, const double 
     }
 }
 
-static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, const View *view)
+static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, double lift_m, const View *view)
 {
     for (int k = 0; k < entity->node_count; k++) {
         const PosedNode *node = &entity->node[k];
@@ -132,6 +133,7 @@ static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, con
         double r_cam_from_node[9], from_eye[3], p_cam[3], corner[3][3];
         m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
         v3_sub(from_eye, node->p_enu, view->p_enu);
+        from_eye[2] += lift_m;
         m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
         for (int n = 0; (triangle = parts_node_triangle(node, n)); n++) {
             for (int c = 0; c < 3; c++) {
@@ -169,7 +171,7 @@ static bool lies_within(const double box_px[4], const View *view, const double r
 
 /* The vertices of a node but for blocks of them whose boxes lie within box_px already; through a lens, where straight
  * lines are not, all. */
-static bool grow_by_node(double box_px[4], const View *view, const PosedNode *node, bool first)
+static bool grow_by_node(double box_px[4], const View *view, const PosedNode *node, double lift_m, bool first)
 {
     const bool lens = view_has_lens(view);
     int        count;
@@ -177,6 +179,7 @@ static bool grow_by_node(double box_px[4], const View *view, const PosedNode *no
     double r_cam_from_node[9], from_eye[3], p_cam[3], box[8][3];
     m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
     v3_sub(from_eye, node->p_enu, view->p_enu);
+    from_eye[2] += lift_m;
     m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
     if (!first && !lens && count > 8) {
         parts_node_box(box, node);
@@ -199,10 +202,13 @@ bool visibility_project_box(double box_px[4], const Visibility *v, const View *v
     const PosedEntity *entity = visibility_posed(v, index);
     double             box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     if (entity->model < 0) return false;
-    const int largest = parts_largest_node(entity);
-    for (int n = 0; n < entity->node_count; n++)
-        if (!grow_by_node(box, view, &entity->node[n == 0 ? largest : n <= largest ? n - 1 : n], n == 0)) return false;
-    if (view_has_lens(view)) grow_by_bowed_edges(box, entity, view);
+    const int    largest = parts_largest_node(entity);
+    const double lift_m = visibility_lift(v, index);
+    for (int n = 0; n < entity->node_count; n++) {
+        const PosedNode *node = &entity->node[n == 0 ? largest : n <= largest ? n - 1 : n];
+        if (!grow_by_node(box, view, node, lift_m, n == 0)) return false;
+    }
+    if (view_has_lens(view)) grow_by_bowed_edges(box, entity, lift_m, view);
     memcpy(box_px, box, sizeof box);
     return true;
 }

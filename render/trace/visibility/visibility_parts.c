@@ -22,6 +22,17 @@ void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const
     }
 }
 
+/* The entity's sphere as these rays meet it. */
+static void meet_sphere(uint8_t *ask, const Visibility *v, const Rays *rays, int index, const double *limit_m)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    const PosedEntity  *entity = visibility_posed(v, index);
+    const double        centre[3] = {entity->centre_enu[0], entity->centre_enu[1],
+                                     entity->centre_enu[2] + lift_for(v, rays, index)};
+    rays_meet_sphere(ask, rays->count, o, d, limit_m, centre, entity->radius_m);
+}
+
 static void parts_first(double *range_m, void *found, const TraceBlock *block, const void *self)
 {
     const Visibility          *v = block->v;
@@ -33,6 +44,7 @@ static void parts_first(double *range_m, void *found, const TraceBlock *block, c
     double      nearer_m[hits_capacity];
     int         order[hits_capacity], asked_ray[hits_capacity];
     uint8_t     ask[hits_capacity];
+    double      z_m[hits_capacity];
     (void)self;
     memcpy(limit_m, block->limit_m, (size_t)count * sizeof *limit_m);
     memset(of->entity, 0, (size_t)count * sizeof *of->entity);
@@ -64,8 +76,7 @@ static void parts_first(double *range_m, void *found, const TraceBlock *block, c
             }
             continue;
         }
-        if (skips(v->skips_off, SKIP_SPHERE))
-            rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
+        if (skips(v->skips_off, SKIP_SPHERE)) meet_sphere(ask, v, block->rays, index, limit_m);
         else memset(ask, 1, sizeof ask);
         if (!ordered) order_rays(order, count, block->rays->columns);
         ordered = true;
@@ -74,8 +85,10 @@ static void parts_first(double *range_m, void *found, const TraceBlock *block, c
         if (listed == 0) continue;
         asked += (uint64_t)listed;
         for (int n = 0; n < listed; n++) nearer_m[asked_ray[n]] = INFINITY;
+        const double *const from[3] = {o[0], o[1],
+                                       lowered(z_m, o[2], lift_for(v, block->rays, index), asked_ray, listed)};
         block->counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
-                                               parts_first_hits(nearer_m, of->hit, entity, o, d, limit_m, asked_ray,
+                                               parts_first_hits(nearer_m, of->hit, entity, from, d, limit_m, asked_ray,
                                                                 listed, !skips(v->skips_off, SKIP_PART));
         for (int n = 0; n < listed; n++) {
             const int i = asked_ray[n];
@@ -97,9 +110,11 @@ static void complete_part_hit(Hits *hits, int i, PosedFacet *facet, const PartsF
     const PartHit     *hit = &found->hit[i];
     const PosedEntity *posed = visibility_posed(v, (int)found->entity[i] - 1);
     const Model       *model = tracer_model(v->tracer, posed->model);
-    const double       o[3] = {block->o_enu[0][i], block->o_enu[1][i], block->o_enu[2][i]};
+    const double       lift_m = lift_for(v, block->rays, (int)found->entity[i] - 1);
+    const double       o[3] = {block->o_enu[0][i], block->o_enu[1][i], block->o_enu[2][i] - lift_m};
     const double       d[3] = {block->d_enu[0][i], block->d_enu[1][i], block->d_enu[2][i]};
     double             n_geo[3], n_enu[3];
+    if (lift_m > 0) hits->p_enu[2][i] = o[2] + hits->range_m[i] * d[2]; /* raised as a whole: the place on its part */
     if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle)
         parts_facet(facet, model, posed, hit);
     parts_facet_normals(n_geo, n_enu, model, facet, o, d, hits->range_m[i]);
@@ -215,17 +230,18 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
         memset(meets, 0, (size_t)rays->count);
         return;
     }
-    if (skips(v->skips_off, SKIP_SPHERE))
-        rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    if (skips(v->skips_off, SKIP_SPHERE)) meet_sphere(meets, v, rays, index, rays->far_m);
     else memset(meets, 1, (size_t)rays->count);
     int order[hits_capacity], list[hits_capacity];
     order_rays(order, rays->count, rays->columns);
     const int listed = list_asked(list, order, meets, rays->count);
     memset(meets, 0, (size_t)rays->count);
+    double              z_m[hits_capacity];
+    const double *const from[3] = {o[0], o[1], lowered(z_m, o[2], lift_for(v, rays, index), list, listed)};
     counters->skipped[SKIP_SPHERE] += (uint64_t)(rays->count - listed);
     counters->skipped[SKIP_PART] +=
         (uint64_t)listed * (uint64_t)entity->node_count -
-        parts_any_hits(meets, entity, o, d, rays->far_m, list, listed, !skips(v->skips_off, SKIP_PART));
+        parts_any_hits(meets, entity, from, d, rays->far_m, list, listed, !skips(v->skips_off, SKIP_PART));
 }
 
 void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index,
@@ -239,14 +255,15 @@ void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *ra
     out->entity = index;
     for (int i = 0; i < rays->count; i++) out->range_m[i] = INFINITY;
     if (entity->model < 0) return;
-    if (skips(v->skips_off, SKIP_SPHERE))
-        rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    if (skips(v->skips_off, SKIP_SPHERE)) meet_sphere(meets, v, rays, index, rays->far_m);
     else memset(meets, 1, sizeof meets);
     order_rays(order, rays->count, rays->columns);
     const int listed = list_asked(list, order, meets, rays->count);
     counters->skipped[SKIP_SPHERE] += (uint64_t)(rays->count - listed);
+    double              z_m[hits_capacity];
+    const double *const from[3] = {o[0], o[1], lowered(z_m, o[2], lift_for(v, rays, index), list, listed)};
     counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
-                                    parts_first_hits(out->range_m, out->hit, entity, o, d, rays->far_m, list, listed,
+                                    parts_first_hits(out->range_m, out->hit, entity, from, d, rays->far_m, list, listed,
                                                      !skips(v->skips_off, SKIP_PART));
 }
 
@@ -256,7 +273,8 @@ void visibility_lie_beyond(uint8_t *may, const Visibility *v, int index, const R
     const PosedEntity *entity = visibility_posed(v, index);
     const double      *ox = rays->o_enu[0], *oy = rays->o_enu[1], *oz = rays->o_enu[2];
     const double      *dx = rays->d_enu[0], *dy = rays->d_enu[1], *dz = rays->d_enu[2];
-    const double       x = entity->centre_enu[0], y = entity->centre_enu[1], z = entity->centre_enu[2];
+    const double       x = entity->centre_enu[0], y = entity->centre_enu[1];
+    const double       z = entity->centre_enu[2] + lift_for(v, rays, index);
     const double       radius_m = entity->radius_m;
     const bool         all = !skips(v->skips_off, SKIP_AMODAL);
     if (all || entity->model < 0) {

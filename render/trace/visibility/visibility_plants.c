@@ -6,6 +6,7 @@
 typedef struct NearEntities {
     const Visibility *v;
     const BroadRays  *rays;
+    const Rays       *of;
     int               hidden, count;
     uint8_t          *near; /* [count] */
 } NearEntities;
@@ -22,7 +23,9 @@ static void mark_near(void *user, int index)
     if (index == n->hidden) return;
     const PosedEntity *entity = visibility_posed(n->v, index);
     if (entity->model < 0) return;
-    rays_meet_sphere(meets, n->count, o, d, anywhere_m, entity->centre_enu, entity->radius_m);
+    const double lift_m = lift_for(n->v, n->of, index);
+    const double centre[3] = {entity->centre_enu[0], entity->centre_enu[1], entity->centre_enu[2] + lift_m};
+    rays_meet_sphere(meets, n->count, o, d, anywhere_m, centre, entity->radius_m);
     for (int i = 0; i < n->count; i++) n->near[i] |= meets[i];
 }
 
@@ -38,7 +41,7 @@ static void find_near(uint8_t near[hits_capacity], const Visibility *v, const Ra
             for (int c = 0; c < 3; c++) packet.o[c][k] = rays->o_enu[c][i], packet.d[c][k] = rays->d_enu[c][i];
             packet.limit_m[k] = k < some ? INFINITY : -1;
         }
-        NearEntities n = {.v = v, .rays = &packet, .hidden = hidden, .count = some, .near = near + first};
+        NearEntities n = {.v = v, .rays = &packet, .of = rays, .hidden = hidden, .count = some, .near = near + first};
         broad_phase_rays(v->tree, &packet, mark_near, &n);
     }
 }
@@ -47,15 +50,16 @@ static void find_near(uint8_t near[hits_capacity], const Visibility *v, const Ra
 
 static void plants_first(double *range_m, void *found, const TraceBlock *block, const void *self)
 {
-    const ForestFrame *plants = self;
-    const bool         simplified = forest_simplifies(plants->forest);
-    const int          count = block->rays->count;
-    uint8_t            real[hits_capacity];
+    ForestFrame plants = *(const ForestFrame *)self;
+    const bool  simplified = forest_simplifies(plants.forest);
+    const int   count = block->rays->count;
+    uint8_t     real[hits_capacity];
+    if (block->rays->bent) plants.bend_per_m = block->v->seen.bend_per_m;
     memcpy(range_m, block->limit_m, (size_t)count * sizeof *range_m);
     if (block->v->full_plants) memset(real, 1, (size_t)count);
     else if (simplified) find_near(real, block->v, block->rays, block->among->hidden);
     block->counters->rays_plants +=
-        forest_first_hits(range_m, found, plants, count, block->o_enu, block->d_enu, simplified ? real : NULL);
+        forest_first_hits(range_m, found, &plants, count, block->o_enu, block->d_enu, simplified ? real : NULL);
     for (int i = 0; i < count; i++) range_m[i] = range_m[i] < block->limit_m[i] ? range_m[i] : INFINITY;
 }
 
@@ -67,9 +71,10 @@ static void plants_finish(Hits *hits, const int *list, int count, const void *fo
     for (int k = 0; k < count; k++) {
         const int        i = list[k];
         const ForestHit *hit = (const ForestHit *)found + i;
-        const double     o[3] = {block->o_enu[0][i], block->o_enu[1][i], block->o_enu[2][i]};
-        const double     d[3] = {block->d_enu[0][i], block->d_enu[1][i], block->d_enu[2][i]};
         const double     range_m = hits->range_m[i];
+        const double     drop_m = block->rays->bent ? ray_drop(block->v, block->rays, i, range_m) : 0;
+        const double     o[3] = {block->o_enu[0][i], block->o_enu[1][i], block->o_enu[2][i] - drop_m};
+        const double     d[3] = {block->d_enu[0][i], block->d_enu[1][i], block->d_enu[2][i]};
         ForestSurface    at;
         forest_surface(&at, plants, hit, o, d, range_m, (float)(range_m / plants->per_rad));
         visibility_store_normals(hits, i, at.n_geo, at.n_enu, d);

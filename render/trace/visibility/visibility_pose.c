@@ -1,6 +1,7 @@
 /* render/trace/visibility/visibility_pose.c: the entities of a frame: the spheres of all of them, and their nodes on
  * first use. */
 #include "render/trace/visibility/visibility_private.h"
+#include "terrain/earth/refraction.h"
 
 static const PosedEntity not_drawn = {.model = -1};
 
@@ -50,6 +51,15 @@ const PosedEntity *visibility_posed(const Visibility *v, int index)
     return posed;
 }
 
+double visibility_bend(const Visibility *v) { return v->seen.bend_per_m; }
+
+double visibility_lift_at(const Visibility *v, const double p_enu[3])
+{
+    return refraction_drop(v->seen.bend_per_m, v->eye_enu, p_enu);
+}
+
+double visibility_lift(const Visibility *v, int index) { return v->lift_m ? v->lift_m[index] : 0; }
+
 int visibility_count(const Visibility *v) { return v->count; }
 
 void visibility_materials(Visibility *v, const Materials *materials) { v->materials = materials; }
@@ -73,6 +83,17 @@ static double wider_m(const Model *model, double largest_node_m)
     return (1 + 2 * sqrt(3.0)) * ball_m - model->radius_m;
 }
 
+/* The sphere of an entity of the tree, which holds it where it is and where it is raised to. lift_m: NULL: nothing is
+ * raised. */
+static void raise_sphere(double sphere[4], double *lift_m, const Visibility *v, int k)
+{
+    double p_enu[3];
+    if (!lift_m) return;
+    enu_from_ecef(p_enu, v->frame, v->snapshot->entity[k].p_ecef);
+    lift_m[k] = visibility_lift_at(v, p_enu);
+    sphere[2] += 0.5 * lift_m[k], sphere[3] += 0.5 * lift_m[k];
+}
+
 /* A model's sphere contains it in every pose (entities/models/model.h); nodes that come with the snapshot are taken
  * as they are. */
 static Status bound_entities(Visibility *v, Arena *arena)
@@ -80,7 +101,9 @@ static Status bound_entities(Visibility *v, Arena *arena)
     const size_t count = (size_t)v->count + 1;
     int         *item = arena_alloc(arena, count, sizeof *item);
     double(*sphere)[4] = arena_alloc(arena, count, sizeof *sphere);
-    if (!item || !sphere) return STATUS_NO_MEMORY;
+    double *lift_m = v->seen.bend_per_m > 0 ? arena_alloc(arena, count, sizeof *lift_m) : NULL;
+    if (!item || !sphere || (v->seen.bend_per_m > 0 && !lift_m)) return STATUS_NO_MEMORY;
+    v->lift_m = lift_m;
     int widest = -1;
     for (int k = 0; k < v->count; k++) {
         const SnapshotEntity *e = &v->snapshot->entity[k];
@@ -102,7 +125,9 @@ static Status bound_entities(Visibility *v, Arena *arena)
                 v->wider_m = fmax(v->wider_m, wider_m(model, parts_largest_node_m(v->tracer, e->model)));
             widest = e->model;
         }
-        if (v->loose[k]) item[v->drawable++] = k;
+        if (!v->loose[k]) continue;
+        raise_sphere(to, lift_m, v, k);
+        item[v->drawable++] = k;
     }
     return broad_phase_create(&v->tree, item, (const double(*)[4])sphere, v->drawable, arena);
 }
@@ -110,16 +135,26 @@ static Status bound_entities(Visibility *v, Arena *arena)
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
                          const Snapshot *snapshot, unsigned skips_off, Arena *arena)
 {
-    Visibility *v = arena_alloc(arena, 1, sizeof *v);
-    int         most_nodes = 1;
+    const VisibilityConfig straight = {tracer, ground, frame, snapshot, skips_off, {0, 0, 0}, 0};
+    return visibility_create_seen(out, &straight, arena);
+}
+
+Status visibility_create_seen(Visibility **out, const VisibilityConfig *config, Arena *arena)
+{
+    const Snapshot *snapshot = config->snapshot;
+    Visibility     *v = arena_alloc(arena, 1, sizeof *v);
+    int             most_nodes = 1;
     if (!v) return STATUS_NO_MEMORY;
-    *v = (Visibility){.tracer = tracer,
-                      .landscape = ground,
-                      .frame = frame,
+    *v = (Visibility){.tracer = config->tracer,
+                      .landscape = config->ground,
+                      .frame = config->frame,
                       .snapshot = snapshot,
-                      .skips_off = skips_off,
+                      .skips_off = config->skips_off,
                       .count = snapshot->count};
-    ground_prepare(&v->ground, ground ? &ground->elevation : NULL);
+    ground_prepare(&v->ground, config->ground ? &config->ground->elevation : NULL);
+    v->seen = v->ground;
+    v->seen.bend_per_m = config->bend_per_m;
+    memcpy(v->eye_enu, config->eye_enu, sizeof v->eye_enu);
     v->posed = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->posed);
     v->loose = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->loose);
     v->poser = arena_alloc(arena, 1, sizeof *v->poser);
@@ -131,7 +166,7 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
     if (status == STATUS_OK) status = bound_entities(v, arena);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < v->count; k++) {
-        const int nodes = v->loose[k] ? tracer_model(tracer, snapshot->entity[k].model)->node_count : 0;
+        const int nodes = v->loose[k] ? tracer_model(v->tracer, snapshot->entity[k].model)->node_count : 0;
         most_nodes = nodes > most_nodes ? nodes : most_nodes;
     }
     v->poser->node = arena_alloc(arena, (size_t)most_nodes, sizeof *v->poser->node);
@@ -165,6 +200,7 @@ static bool posed_box(void *user, int item, double low[3], double high[3])
         }
         low[r] = middle - half, high[r] = middle + half;
     }
+    high[2] += visibility_lift(v, item); /* where it is, and where it is raised to */
     return true;
 }
 

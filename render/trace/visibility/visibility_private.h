@@ -40,7 +40,9 @@ struct Visibility {
     const Materials              *materials; /* NULL: hits have no material */
     const LocalFrame             *frame;
     const Snapshot               *snapshot;
-    Ground                        ground;
+    Ground                        ground, seen; /* seen: of bent rays */
+    double                        eye_enu[3];
+    const double                 *lift_m;      /* [count]: of entities for bent rays; NULL: 0 */
     bool                          full_plants; /* none is simplified */
     unsigned                      skips_off;
     int                           count, drawable;
@@ -50,6 +52,27 @@ struct Visibility {
     BroadPhase                   *tree; /* of those that may be drawn */
     double wider_m;                     /* distance by which the sphere of a posed entity may exceed that in the tree */
 };
+
+/* How far a bent ray has sunk at a range, m. */
+static inline double ray_drop(const Visibility *v, const Rays *rays, int i, double range_m)
+{
+    const double x = range_m * rays->d_enu[0][i], y = range_m * rays->d_enu[1][i];
+    return v->seen.bend_per_m * (x * x + y * y);
+}
+
+/* How far an entity is raised for these rays, m. */
+static inline double lift_for(const Visibility *v, const Rays *rays, int index)
+{
+    return rays->bent && v->lift_m ? v->lift_m[index] : 0;
+}
+
+/* Heights of the origins of listed rays over those of an entity that is raised; z_m: memory. */
+static inline const double *lowered(double *z_m, const double *oz_m, double lift_m, const int *list, int count)
+{
+    if (!(lift_m > 0)) return oz_m;
+    for (int n = 0; n < count; n++) z_m[list[n]] = oz_m[list[n]] - lift_m;
+    return z_m;
+}
 
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. */
 void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],

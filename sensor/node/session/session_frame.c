@@ -56,6 +56,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
                                .lateral = {s->shared->sensors->lateral[0], s->shared->sensors->lateral[1]},
                                .sky_samples = config->sensor.sky_samples,
                                .sky_visibility = config->sensor.sky_visibility,
+                               .refraction = config->sensor.refraction,
                                .samples = config->sensor.samples,
                                .hidden_entity = eye->hidden,
                                .t_s = t_s,
@@ -256,7 +257,7 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, cons
     if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
     fill_record(f, s, &eye);
     if (s->wants & WANT_FOOTPRINT) {
-        truth_footprint(f->footprint, shared->world, &eye.view);
+        truth_footprint(f->footprint, shared->world, &f->request);
         f->record.footprint = f->footprint;
     }
     status = measure(f, s, &eye, verdict);

@@ -140,6 +140,7 @@ Status saved_radar_again(const RadarFrame **out, SeekerRadar *radar, const Saved
     const SavedRadar *r = &file->radar;
     const Weather     weather = frame_weather_at(stage->config, stage->world, file->unix_s + file->time_s);
     RadarScene        scene = {.world = stage->world,
+                               .refraction = file->request.refraction,
                                .snapshot = stage->snapshot,
                                .joint = r->joint,
                                .view = &file->request.view,

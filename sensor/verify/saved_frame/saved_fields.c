@@ -267,6 +267,8 @@ void saved_fields_request(Fields *f, SavedFrame *file)
     if (f->version >= 5) field_int(f, "sampling", &sampling, SAMPLING_ALL, SAMPLING_QUARTER);
     else sampling = SAMPLING_ALL;
     r->sampling = (Sampling)sampling;
+    if (f->version >= 7) field_bool(f, "refraction", &r->refraction);
+    else r->refraction = false;
 }
 
 /* ---- plants -------------------------------------------------------------------------------------- */

@@ -5,6 +5,7 @@
 #include "pitviper_simd.h"
 #include "terrain/earth/geoid.h"
 #include "terrain/earth/geodesy.h"
+#include "terrain/earth/refraction.h"
 #include "terrain/earth/sun.h"
 
 #include <stdlib.h>
@@ -152,6 +153,65 @@ static void tunable_geodetic(Bench *bench)
     bench_tunable(bench,
                   &(BenchTunable){"latitude, longitude, height", "terrain/earth/geodesy.cpp",
                                   "a place up to 500 km high", "m", "largest, back again in long double", 1e-8},
+                  work, point, settings);
+}
+
+/* ---- refraction ------------------------------------------------------------------------------------ */
+
+enum { eyes = 256 };
+
+/* How the air's gradient is taken along the line of sight to the horizon. */
+typedef enum BendWay { BEND_NONE, BEND_AT_GROUND, BEND_AT_EYE, BEND_MEAN } BendWay;
+
+typedef struct BendSet {
+    BendWay way;
+    double  eye_m[eyes], dip_rad[eyes];
+} BendSet;
+
+static const double bend_earth_m = 6371e3;
+
+static void find_dips(void *user)
+{
+    BendSet *s = user;
+    for (int i = 0; i < eyes; i++) {
+        const double eye_m = s->eye_m[i];
+        const double bend = s->way == BEND_NONE        ? 0
+                            : s->way == BEND_AT_GROUND ? refraction_bend(REFRACTION_OPTICAL, 0, 0)
+                            : s->way == BEND_AT_EYE    ? refraction_bend(REFRACTION_OPTICAL, eye_m, eye_m)
+                                                       : refraction_bend(REFRACTION_OPTICAL, eye_m, 0);
+        const double flat = 0.5 / bend_earth_m - bend;
+        /* the slope of a parabola; a circle's for the rest of it */
+        s->dip_rad[i] = acos(bend_earth_m / (bend_earth_m + eye_m)) * sqrt(2 * bend_earth_m * flat);
+    }
+    bench_keep(s->dip_rad);
+}
+
+/* Dip of the horizon from 2 m to 30 km: n r cos is the same all along a ray in a spherical atmosphere. */
+static void tunable_refraction(Bench *bench)
+{
+    enum { settings = 4 };
+    static const char *const name[settings] = {"none", "gradient at the ground", "gradient at the eye",
+                                               "mean of the heights between"};
+    static BendSet           set[settings];
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    const double             scale_m = 11000, n = (1 - 1 / 1.149) * scale_m / bend_earth_m;
+    for (int k = 0; k < settings; k++) {
+        set[k].way = (BendWay)k;
+        for (int i = 0; i < eyes; i++) set[k].eye_m[i] = 2 * pow(15000, i / (eyes - 1.0));
+        find_dips(&set[k]);
+        for (int i = 0; i < eyes; i++) {
+            const double eye_m = set[k].eye_m[i];
+            const double share = (1 + n) * bend_earth_m / ((1 + n * exp(-eye_m / scale_m)) * (bend_earth_m + eye_m));
+            bench_worst(&point[k].error, fabs(set[k].dip_rad[i] / acos(share) - 1));
+        }
+        work[k] = (BenchWork){find_dips, &set[k], eyes};
+        point[k].setting = name[k];
+        point[k].is_default = k == BEND_MEAN;
+    }
+    bench_tunable(bench,
+                  &(BenchTunable){"refraction: dip of the horizon", "terrain/earth/refraction.h",
+                                  "an eye of 2 m to 30 km", "of it", "largest, Snell's invariant", 1e-4},
                   work, point, settings);
 }
 
@@ -365,6 +425,7 @@ Status bench_precision_earth(Bench *bench)
         return status;
     }
     tunable_geodetic(bench);
+    tunable_refraction(bench);
     tunable_geoid(bench);
     tunable_sun(bench);
     tunable_powers(bench);
