@@ -41,6 +41,8 @@ typedef struct AirState {
 /* Whether the air of a model follows the temperature and the water vapour at the ground: us1976 and midlat_summer do, a
  * user's own tables are what they are. */
 bool atmosphere_follows_weather(const Atmosphere *atmosphere);
+/* The same of one band: channels that vapour.bin does not have keep the air of the tables. */
+bool atmosphere_band_follows(const Atmosphere *atmosphere, AirBand band);
 /* Water vapour at the ground of the model's own air; NaN: its tables do not say. */
 double atmosphere_vapour_kg_m3(const Atmosphere *atmosphere);
 /* The model's air under a weather, valid for all functions here at that visibility alone; clear air by

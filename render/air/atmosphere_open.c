@@ -210,9 +210,8 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
     if (status == STATUS_OK) status = sun_top_open(atmosphere->sun_top_w_m2);
     if (status == STATUS_OK) status = solar_open(&atmosphere->solar);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        double low_m, high_m;
-        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
-        status = planck_table_create(&atmosphere->planck[k], low_m, high_m);
+        const SpectralBand band = channel_band((ChannelPlace)(SPECTRAL_MWIR + k));
+        status = planck_table_seen(&atmosphere->planck[k], &band);
     }
     if (status == STATUS_OK) status = open_model(atmosphere, folder, visibility_m);
     if (status == STATUS_OK && !named) status = atmosphere_vapour_open(atmosphere, model);
