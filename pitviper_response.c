@@ -13,8 +13,12 @@ static const TableColumn columns[] = {
     {"wavelength_um", TABLE_DOUBLE, TABLE_AT(Row, at_m), .low = 0.3, .high = 30, .unit = 1e-6},
     {"response", TABLE_DOUBLE, TABLE_AT(Row, value), .low = 0, .high = 1},
 };
-static const TableFormat format = {"channels",      columns,         2, .next = "etc/ADDING.md, A channel, explains it",
-                                   .least_rows = 2, .most_rows = response_points_most};
+static const TableFormat format = {"channels",
+                                   columns,
+                                   2,
+                                   .next = "etc/ADDING.md, A channel, explains it",
+                                   .least_rows = 2,
+                                   .most_rows = response_points_most};
 
 static Status take_point(void *user, const void *read, const TableRows *rows, int row)
 {
@@ -37,7 +41,7 @@ static void add_piece(SpectralResponse *r, double from_m, double to_m, int point
                                       {0.339981043584856264803, 0.652145154862546142627},
                                       {0.861136311594052575224, 0.347854845137453857373}};
     const bool          fine = to_m - from_m <= 0.005 * from_m;
-    const double (*rule)[2] = fine ? two : four;
+    const double(*rule)[2] = fine ? two : four;
     const double low_m = r->at_m[point], span_m = r->at_m[point + 1] - low_m, half_m = 0.5 * (to_m - from_m);
     for (int i = 0; i < (fine ? 2 : 4); i++) {
         const double at_m = from_m + half_m * (1 + rule[i][0]), t = (at_m - low_m) / span_m;

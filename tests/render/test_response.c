@@ -51,14 +51,10 @@ static void black_bodies_through_it(void **state)
         const char *const *text;
         double             temp_k, w_m2_sr, per_k;
     } row[] = {
-        {&triangle, 180, 0.79996391302432, 0.035073643324526},
-        {&triangle, 300, 19.550490581936, 0.31749783212396},
-        {&triangle, 1000, 770.68955093095, 1.4773340152959},
-        {&filter, 180, 0.0009464210595829, 9.3256237692431e-5},
-        {&filter, 300, 1.2609965599074, 0.046099026099162},
-        {&filter, 1000, 3317.163170024, 11.777574201582},
-        {&silicon, 1000, 0.2001130496021, 0.0038452565293807},
-        {&silicon, 5772, 2524477.2525801, 1591.1654361906},
+        {&triangle, 180, 0.79996391302432, 0.035073643324526}, {&triangle, 300, 19.550490581936, 0.31749783212396},
+        {&triangle, 1000, 770.68955093095, 1.4773340152959},   {&filter, 180, 0.0009464210595829, 9.3256237692431e-5},
+        {&filter, 300, 1.2609965599074, 0.046099026099162},    {&filter, 1000, 3317.163170024, 11.777574201582},
+        {&silicon, 1000, 0.2001130496021, 0.0038452565293807}, {&silicon, 5772, 2524477.2525801, 1591.1654361906},
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         SpectralBand band = band_of(*row[i].text);
@@ -118,16 +114,16 @@ static void wrong_files_are_refused(void **state)
     static const char *const wrong[] = {
         "",
         "wavelength_um,response\n",
-        "wavelength_um,response\n8,1\n",          /* one point */
-        "wavelength_um\n8\n9\n",                  /* a column is missing */
-        "wavelength_um,response\n8,0\n8,1\n",     /* not rising */
+        "wavelength_um,response\n8,1\n",      /* one point */
+        "wavelength_um\n8\n9\n",              /* a column is missing */
+        "wavelength_um,response\n8,0\n8,1\n", /* not rising */
         "wavelength_um,response\n9,0\n8,1\n",
-        "wavelength_um,response\n8,0\n9,1.2\n",   /* beyond 1 */
+        "wavelength_um,response\n8,0\n9,1.2\n", /* beyond 1 */
         "wavelength_um,response\n8,-0.1\n9,1\n",
-        "wavelength_um,response\n8,0\n9,0.8\n",   /* with the optics in it */
+        "wavelength_um,response\n8,0\n9,0.8\n", /* with the optics in it */
         "wavelength_um,response\n8,0\n9,0\n",
         "wavelength_um,response\n8,nan\n9,1\n",
-        "wavelength_um,response\n0.2,0\n9,1\n",   /* beyond what tables have */
+        "wavelength_um,response\n0.2,0\n9,1\n", /* beyond what tables have */
         "wavelength_um,response\n8000,0\n9000,1\n",
         "wavelength_um,response\n8,0\n9,1,1\n9,",
     };
@@ -148,11 +144,12 @@ static void wrong_files_are_refused(void **state)
 static Status check_rows(const char *more)
 {
     char text[1024];
-    snprintf(text, sizeof text,
-             "name,low_um,high_um,kind,place,response\nb,0.4,0.5,reflective,b,\ng,0.5,0.6,reflective,g,\n"
-             "r,0.6,0.7,reflective,r,\npan,0.4,0.7,reflective,pan,\nnir,0.7,1.1,reflective,nir,\nmwir,3.4,4.8,both,mwir,\n"
-             "lwir,8,12,emissive,lwir,%s\n",
-             more);
+    snprintf(
+        text, sizeof text,
+        "name,low_um,high_um,kind,place,response\nb,0.4,0.5,reflective,b,\ng,0.5,0.6,reflective,g,\n"
+        "r,0.6,0.7,reflective,r,\npan,0.4,0.7,reflective,pan,\nnir,0.7,1.1,reflective,nir,\nmwir,3.4,4.8,both,mwir,\n"
+        "lwir,8,12,emissive,lwir,%s\n",
+        more);
     const Status status = channels_check(write_file("channels.csv", text));
     CHECK(remove(path) == 0);
     return status;
@@ -185,8 +182,8 @@ static void droplets_are_seen_through_it(void **state)
     SpectralChannel        own = *lwir;
     SpectralBand           end[2] = {band_of("wavelength_um,response\n8,1\n8.001,1\n"),
                                      band_of("wavelength_um,response\n11.999,1\n12,1\n")};
-    SpectralBand           both = band_of("wavelength_um,response\n8,1\n8.001,1\n8.0010001,0\n11.9989999,0\n11.999,1\n12,1\n");
-    DropletRow             row[3];
+    SpectralBand both = band_of("wavelength_um,response\n8,1\n8.001,1\n8.0010001,0\n11.9989999,0\n11.999,1\n12,1\n");
+    DropletRow   row[3];
     for (int i = 0; i < 3; i++) {
         own.response = i < 2 ? end[i].response : both.response;
         channel_choose(&own);
@@ -203,9 +200,9 @@ static void droplets_are_seen_through_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(black_bodies_through_it), cmocka_unit_test(of_ones_it_is_the_band),
-        cmocka_unit_test(wrong_files_are_refused),
-        cmocka_unit_test(a_row_names_it), cmocka_unit_test(droplets_are_seen_through_it),
+        cmocka_unit_test(black_bodies_through_it),      cmocka_unit_test(of_ones_it_is_the_band),
+        cmocka_unit_test(wrong_files_are_refused),      cmocka_unit_test(a_row_names_it),
+        cmocka_unit_test(droplets_are_seen_through_it),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

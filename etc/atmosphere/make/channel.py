@@ -89,7 +89,8 @@ class Channel:
         keys = sum(not c.endswith(self.name) and not c.startswith(("depth_", "thermal_")) for c in head.split(","))
         path = os.path.join(folder, f"{file}_{self.name}.csv")
         with open(path + ".part", "w", encoding="ascii") as out:
-            out.write(f"# LOWTRAN7 rev. 4.2 in double precision, {self.low_um:g}-{self.high_um:g} um{'' if self.response is None else ' by a response'}{note}\n{head}\n")
+            how = "" if self.response is None else " by a response"
+            out.write(f"# LOWTRAN7 rev. 4.2 in double precision, {self.low_um:g}-{self.high_um:g} um{how}{note}\n{head}\n")
             for row in rows:
                 # what stands first is a key of the file beside, to the last digit
                 out.write(",".join(f"{x:.9g}" if i < keys else f"{x:.5g}" for i, x in enumerate(row)) + "\n")
