@@ -34,6 +34,10 @@ Status atmosphere_open(Atmosphere **out, const char *model);
 /* The same for one visibility alone, m: it reads only the neighbouring tables and is valid at no other visibility. */
 Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m);
 void   atmosphere_close(Atmosphere *atmosphere);
+/* The model to open for a weather at the ground. A folder with weathers.csv (folder, air_temp_k, vapour_g_m3) is a set
+ * of models: the one whose air is nearest, with 5 K as far as a fifth of the vapour; any other model is itself. Logged:
+ * a table that is wrong; a set and a temp_k of NaN. */
+Status atmosphere_nearest(char *out, size_t out_size, const char *model, double temp_k, double vapour_kg_m3);
 /* Air at the ground: temp_k NaN: the model's own air. */
 typedef struct AirState {
     double visibility_m, temp_k, vapour_kg_m3;

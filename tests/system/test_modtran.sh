@@ -57,4 +57,26 @@ check "the folder is the same" diff -r "$tmp/own" "$tmp/listed"
 sed -i 's/^sky.tp7,6/sky.tp7,7/' "$tmp/runs.csv"
 check "a run that is not there" not convert "$tmp/other" "$tmp"/{clear,hazy,sky}.tp7 --runs "$tmp/runs.csv"
 check "and its words" grep -q 'there is no run 7 of sky.tp7' "$tmp/stderr"
+
+# a set of airs by weather: 300 K and 60 % are 15.2 g/m3 (Tetens), nearer to 13 g/m3 at 296 K than to 2 at 300 and 19 at 310
+set=$tmp/set
+mkdir "$set"
+for air in dry own wet; do mv "$tmp/own" "$set/$air"; cp -r "$set/$air" "$tmp/own"; done
+printf 'folder,air_temp_k,vapour_g_m3\ndry,300,2\nown,296,13\nwet,310,19\n' >"$set/weathers.csv"
+exercise demo "$tmp/exercise.pcap"
+picture() { run replay "$tmp/exercise.pcap" --bands lwir --size 64x48 --only 0 --no-png --threads 1 "${coarse[@]}" "$@"; }
+picture --set weather.atmosphere="$set" --set weather.air_temp_k=300 --out "$tmp/o"
+check "set: it runs" [ $code = 0 ]
+check "set: the nearest" grep -qE "^air: .*/set/own is that of .*/set nearest to the weather" "$tmp/stdout"
+check "set: what is still between them" grep -qE '^air: .*/set/own is of 15 C at the ground, the weather of 27 C; trans' "$tmp/stdout"
+check "set: its files are recorded" grep -q '"atmosphere/.*/set"' "$tmp/o/run.json"
+picture --set weather.atmosphere="$set/own" --set weather.air_temp_k=300 --out "$tmp/p"
+check "set: the picture of that one" same_hashes "$tmp/o" "$tmp/p"
+picture --set weather.atmosphere="$set" --out "$tmp/q"
+check "set: no weather to choose by" complained 'set is a set of airs, .*: set weather.air_temp_k'
+echo 'weather: {atmosphere: set, air_temp_k: 300}' | sed "s|set,|$set,|" >"$tmp/set.yaml"
+check "set: check" "$pitviper" check "$tmp/set.yaml"
+sed -i 's/^own/..\/own/' "$set/weathers.csv"
+run check "$tmp/set.yaml"
+check "set: a folder elsewhere" complained "weathers.csv:3: column folder: '../own' is not the name of a folder beside this file"
 finish

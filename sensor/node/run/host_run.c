@@ -184,8 +184,12 @@ static void report_fixed_air(Choices *choices, const Config *config, const World
     const Atmosphere *atmosphere = world->atmosphere;
     Weather           weather = weather_default();
     char              fixed[SPECTRAL_PLACES * (channel_name_size + 2)];
+    char              model[frame_model_size];
     list_fixed(fixed, sizeof fixed, atmosphere);
-    if (!*fixed) return;
+    if (!*fixed || frame_world_model(model, config) != STATUS_OK) return;
+    if (strcmp(model, config->weather.atmosphere) != 0)
+        choice_add(choices, "air: %s is that of %s nearest to the weather (weather.atmosphere)", model,
+                   config->weather.atmosphere);
     const double own_k = atmosphere_temp_k(atmosphere, 0), own_kg_m3 = atmosphere_vapour_kg_m3(atmosphere);
     weather.air_temp_k = isnan(config->weather.air_temp_k) ? own_k : config->weather.air_temp_k;
     weather.humidity = 0.01 * config->weather.humidity_pct;
@@ -196,20 +200,19 @@ static void report_fixed_air(Choices *choices, const Config *config, const World
             choice_add(choices,
                        "air: %s keeps the clear air of %s (%.0f C and %.1f g/m3 of water vapour at the ground), the "
                        "weather has %.0f C and %.1f (etc/atmosphere/vapour.bin lacks this channel)",
-                       fixed, config->weather.atmosphere, own_k - 273.15, 1e3 * own_kg_m3, weather.air_temp_k - 273.15,
-                       1e3 * set_kg_m3);
+                       fixed, model, own_k - 273.15, 1e3 * own_kg_m3, weather.air_temp_k - 273.15, 1e3 * set_kg_m3);
         return;
     }
     if (fabs(weather.air_temp_k - own_k) > 5)
         choice_add(choices,
                    "air: %s is of %.0f C at the ground, the weather of %.0f C; transmittance stays that of its tables "
                    "(weather.air_temp_k; weather.atmosphere: us1976 follows the weather)",
-                   config->weather.atmosphere, own_k - 273.15, weather.air_temp_k - 273.15);
+                   model, own_k - 273.15, weather.air_temp_k - 273.15);
     if (fabs(set_kg_m3 - own_kg_m3) > 0.2 * own_kg_m3)
         choice_add(choices,
                    "air: %s has %.1f g/m3 of water vapour at the ground, the weather %.1f; transmittance stays that of "
                    "its tables (weather.humidity_pct; weather.atmosphere: us1976 follows the weather)",
-                   config->weather.atmosphere, 1e3 * own_kg_m3, 1e3 * set_kg_m3);
+                   model, 1e3 * own_kg_m3, 1e3 * set_kg_m3);
 }
 
 static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEntityId *host)
