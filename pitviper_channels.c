@@ -2,6 +2,7 @@
 #include "pitviper_channels.h"
 #include "pitviper_table.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,7 +39,7 @@ static bool edge_of(double *edge_m, const char *um)
 /* A row as it is in the file. */
 typedef struct Row {
     SpectralChannel c;
-    const char     *low_um, *high_um;
+    const char     *low_um, *high_um, *response;
 } Row;
 
 static const char *parse_name(void *out, const char *text)
@@ -57,9 +58,36 @@ static const TableColumn columns[] = {
     {"high_um", .type = TABLE_CELL, TABLE_AT(Row, high_um)},
     {"kind", TABLE_CHOICE, TABLE_AT(Row, c.kind), .choices = "reflective, emissive, both"},
     {"place", TABLE_CHOICE, TABLE_AT(Row, c.place), .choices = "b, g, r, pan, nir, mwir, lwir"},
+    {"response", .type = TABLE_CELL, TABLE_AT(Row, response), .absent = TABLE_OPTIONAL},
 };
-static const TableFormat format = {"channels", columns, 5, .next = "etc/channels.csv explains the columns",
+static const TableFormat format = {"channels", columns, 6, .next = "etc/channels.csv explains the columns",
                                    .most_rows = channels_most};
+
+/* Reads the response that a row names, a file beside the table, and checks that the edges are its ends. */
+static Status open_response(SpectralChannel *c, const char *name, const TableRows *rows, int row)
+{
+    char              path[4096];
+    SpectralResponse *response = NULL;
+    const char       *table_path = rows->table.path, *slash = strrchr(table_path, '/');
+    const size_t      length = strlen(name);
+    if (c->standard)
+        return table_rows_refuse(rows, row, NULL,
+                                 "%s is a standard channel, which sees all between its edges alike: a response needs a "
+                                 "further channel in its place",
+                                 c->name);
+    if (strchr(name, '/') || length < 5 || strcmp(name + length - 4, ".csv") != 0)
+        return table_rows_refuse(rows, row, "response", "the name of a file NAME.csv in the folder of this table");
+    const int folder = slash ? (int)(slash + 1 - table_path) : 0;
+    if (snprintf(path, sizeof path, "%.*s%s", folder, table_path, name) >= (int)sizeof path)
+        return table_rows_refuse(rows, row, "response", "a shorter path");
+    const Status status = response_open(&response, path);
+    if (status != STATUS_OK) return status;
+    c->response = response;
+    const double first_m = response->at_m[0], last_m = response->at_m[response->points - 1];
+    if (fabs(first_m / c->low_m - 1) <= 1e-9 && fabs(last_m / c->high_m - 1) <= 1e-9) return STATUS_OK;
+    return table_rows_refuse(rows, row, NULL, "%s goes from %g to %g um, which must be low_um and high_um", name,
+                             1e6 * first_m, 1e6 * last_m);
+}
 
 static Status take_channel(void *user, const void *read, const TableRows *rows, int row)
 {
@@ -80,8 +108,9 @@ static Status take_channel(void *user, const void *read, const TableRows *rows, 
                    : c.place == SPECTRAL_MWIR ? SPECTRAL_BOTH
                                               : SPECTRAL_EMISSIVE))
         return table_rows_refuse(rows, row, "kind", "reflective of nir's place, both of mwir's, emissive of lwir's");
-    list->channel[list->count++] = c;
-    return STATUS_OK;
+    const Status status = *r->response ? open_response(&c, r->response, rows, row) : STATUS_OK;
+    list->channel[list->count++] = c; /* its response is closed with the list */
+    return status;
 }
 
 static Status read_list(ChannelList *list, const char *path)
@@ -98,10 +127,20 @@ static Status read_list(ChannelList *list, const char *path)
     return status;
 }
 
+static void close_responses(ChannelList *list)
+{
+    for (int i = 0; i < list->count; i++) {
+        response_close((SpectralResponse *)list->channel[i].response);
+        list->channel[i].response = NULL;
+    }
+}
+
 Status channels_check(const char *path)
 {
-    ChannelList list = {0};
-    return read_list(&list, path);
+    ChannelList  list = {0};
+    const Status status = read_list(&list, path);
+    close_responses(&list);
+    return status;
 }
 
 static void load(void)
@@ -111,6 +150,7 @@ static void load(void)
     for (int p = 0; p < SPECTRAL_PLACES; p++) table.in[p] = &none;
     table.status = etc_path(path, sizeof path, "channels.csv") ? read_list(&table.list, path) : STATUS_BAD_VALUE;
     if (table.status == STATUS_NO_MEMORY) log_error("channels: %s: out of memory", path);
+    if (table.status != STATUS_OK) close_responses(&table.list);
     for (int i = 0; i < table.list.count && table.status == STATUS_OK; i++)
         if (table.list.channel[i].standard) table.in[table.list.channel[i].place] = &table.list.channel[i];
 }
@@ -125,6 +165,12 @@ const SpectralChannel *channel_in(ChannelPlace place)
 {
     channels_load();
     return table.in[place];
+}
+
+SpectralBand channel_band(ChannelPlace place)
+{
+    const SpectralChannel *c = channel_in(place);
+    return (SpectralBand){c->low_m, c->high_m, c->response};
 }
 
 const SpectralChannel *channel_named(const char *name, size_t length)

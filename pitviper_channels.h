@@ -6,7 +6,7 @@
 #ifndef PITVIPER_CHANNELS_H
 #define PITVIPER_CHANNELS_H
 
-#include "pitviper.h"
+#include "pitviper_response.h"
 
 /* Places, named after the standard channel of each. */
 typedef enum ChannelPlace {
@@ -31,6 +31,8 @@ typedef struct SpectralChannel {
     ChannelKind  kind;
     ChannelPlace place;
     bool         standard; /* it has its place when no other channel is chosen */
+    /* NULL: all wavelengths between the edges alike, as those of the standard channels */
+    const SpectralResponse *response;
 } SpectralChannel;
 
 /* Reads the table once, at the first call. Later calls return the same status; failures are logged with file and
@@ -40,6 +42,8 @@ Status channels_load(void);
 Status channels_check(const char *path);
 /* The channel in a place; of a table that cannot be read a channel without a name. */
 const SpectralChannel *channel_in(ChannelPlace place);
+/* Edges and response of the channel in a place. */
+SpectralBand channel_band(ChannelPlace place);
 /* NULL: no such channel. */
 const SpectralChannel *channel_named(const char *name, size_t length);
 /* Every standard channel in its place; then another one into its own. Before tables are read, by one thread. */

@@ -49,9 +49,8 @@ static Status open_tables(HeatProbe *p)
     Status status = materials_open(&p->materials, materials, surfaces, NULL);
     if (status == STATUS_OK) status = ground_kinds_open(&p->kinds, ground, &p->materials);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        double low_m, high_m;
-        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
-        status = planck_table_create(&p->planck[k], low_m, high_m);
+        const SpectralBand band = channel_band((ChannelPlace)(SPECTRAL_MWIR + k));
+        status = planck_table_seen(&p->planck[k], &band);
     }
     if (status == STATUS_OK) status = atmosphere_open(&p->atmosphere, "us1976");
     return status;

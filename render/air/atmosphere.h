@@ -34,6 +34,10 @@ Status atmosphere_open(Atmosphere **out, const char *model);
 /* The same for one visibility alone, m: it reads only the neighbouring tables and is valid at no other visibility. */
 Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m);
 void   atmosphere_close(Atmosphere *atmosphere);
+/* The model to open for a weather at the ground. A folder with weathers.csv (folder, air_temp_k, vapour_g_m3) is a set
+ * of models: the one whose air is nearest, with 5 K as far as a fifth of the vapour; any other model is itself. Logged:
+ * a table that is wrong; a set and a temp_k of NaN. */
+Status atmosphere_nearest(char *out, size_t out_size, const char *model, double temp_k, double vapour_kg_m3);
 /* Air at the ground: temp_k NaN: the model's own air. */
 typedef struct AirState {
     double visibility_m, temp_k, vapour_kg_m3;
@@ -41,6 +45,8 @@ typedef struct AirState {
 /* Whether the air of a model follows the temperature and the water vapour at the ground: us1976 and midlat_summer do, a
  * user's own tables are what they are. */
 bool atmosphere_follows_weather(const Atmosphere *atmosphere);
+/* The same of one band: channels that vapour.bin does not have keep the air of the tables. */
+bool atmosphere_band_follows(const Atmosphere *atmosphere, AirBand band);
 /* Water vapour at the ground of the model's own air; NaN: its tables do not say. */
 double atmosphere_vapour_kg_m3(const Atmosphere *atmosphere);
 /* The model's air under a weather, valid for all functions here at that visibility alone; clear air by

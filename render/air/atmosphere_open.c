@@ -176,6 +176,63 @@ static Status no_model(const char *model)
     return STATUS_BAD_VALUE;
 }
 
+/* ---- a set of models by weather ------------------------------------------------------------------ */
+
+typedef struct SetRow {
+    char   folder[128];
+    double temp_k, vapour_kg_m3;
+} SetRow;
+
+typedef struct Nearest {
+    double temp_k, vapour_kg_m3, least; /* wanted; the least distance so far */
+    char   folder[128];
+} Nearest;
+
+static Status take_set_row(void *user, const void *read, const TableRows *rows, int number)
+{
+    Nearest      *n = user;
+    const SetRow *row = read;
+    if (strchr(row->folder, '/') || row->folder[0] == '.')
+        return table_rows_refuse(rows, number, "folder", "the name of a folder beside this file");
+    const double dry = 1e-5; /* of so little vapour a factor changes nothing */
+    const double distance = fabs(row->temp_k - n->temp_k) / 5 +
+                            fabs(log(fmax(row->vapour_kg_m3, dry) / fmax(n->vapour_kg_m3, dry))) / log(1.2);
+    if (distance < n->least) {
+        n->least = distance;
+        memcpy(n->folder, row->folder, sizeof n->folder);
+    }
+    return STATUS_OK;
+}
+
+Status atmosphere_nearest(char *out, size_t out_size, const char *model, double temp_k, double vapour_kg_m3)
+{
+    static const TableColumn columns[] = {
+        {"folder", .type = TABLE_NAME, TABLE_AT(SetRow, folder)},
+        {"air_temp_k", TABLE_DOUBLE, TABLE_AT(SetRow, temp_k), .low = 150, .high = 350},
+        {"vapour_g_m3", TABLE_DOUBLE, TABLE_AT(SetRow, vapour_kg_m3), .low = 0, .high = 200, .unit = 1e-3}};
+    static const TableFormat format = {
+        "atmosphere",    columns,          3, .next = "etc/atmosphere/README.md explains the columns",
+        .least_rows = 1, .most_rows = 1000};
+    SetRow     row;
+    char       path[1024];
+    Nearest    nearest = {temp_k, vapour_kg_m3, INFINITY, ""};
+    Status     status = STATUS_OK;
+    const bool set = strpbrk(model, "/.") && strlen(model) < 900 && folder_has(model, "weathers.csv");
+    if (set && !(isfinite(temp_k) && isfinite(vapour_kg_m3))) {
+        log_error(
+            "atmosphere: %s is a set of airs, of which weather.air_temp_k and weather.humidity_pct choose one: set "
+            "weather.air_temp_k",
+            model);
+        return STATUS_BAD_VALUE;
+    }
+    if (set) status = atmosphere_file(path, model, "weathers.csv");
+    if (set && status == STATUS_OK) status = table_each(&format, path, &row, sizeof row, take_set_row, &nearest);
+    if (status != STATUS_OK) return status;
+    if (snprintf(out, out_size, "%s%s%s", model, set ? "/" : "", nearest.folder) < (int)out_size) return STATUS_OK;
+    log_error("atmosphere: path too long: model=%s", model);
+    return STATUS_BAD_VALUE;
+}
+
 Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m)
 {
     char       name[96], folder[512];
@@ -202,6 +259,10 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
         return STATUS_IO;
     }
     if (access(folder, F_OK) != 0) return no_model(model);
+    if (named && folder_has(folder, "weathers.csv")) {
+        log_error("atmosphere: %s is a set of airs (weathers.csv); name one of its folders", model);
+        return STATUS_BAD_VALUE;
+    }
     Atmosphere *atmosphere = calloc(1, sizeof *atmosphere);
     if (!atmosphere) {
         log_error("atmosphere: out of memory for model %s", model);
@@ -211,9 +272,8 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
     if (status == STATUS_OK) status = sun_top_open(atmosphere->sun_top_w_m2);
     if (status == STATUS_OK) status = solar_open(&atmosphere->solar);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        double low_m, high_m;
-        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
-        status = planck_table_create(&atmosphere->planck[k], low_m, high_m);
+        const SpectralBand band = channel_band((ChannelPlace)(SPECTRAL_MWIR + k));
+        status = planck_table_seen(&atmosphere->planck[k], &band);
     }
     if (status == STATUS_OK) status = open_model(atmosphere, folder, visibility_m);
     if (status == STATUS_OK && !named) status = atmosphere_vapour_open(atmosphere, model);

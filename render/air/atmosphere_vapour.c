@@ -93,7 +93,8 @@ Status atmosphere_vapour_open(Atmosphere *atmosphere, const char *model)
     bool             alike = true;
     for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
         const SpectralChannel *c = channel_in(b);
-        const int              channel = b == AIR_PAN ? -1 : vapour_channel(v, c->name, c->low_m, c->high_m);
+        /* the file's channels see all between their edges alike */
+        const int channel = b == AIR_PAN || c->response ? -1 : vapour_channel(v, c->name, c->low_m, c->high_m);
         atmosphere->vapour_channel[b] = channel;
         if (channel < 0) continue;
         if (!paths) paths = &atmosphere->clear_path[b];
@@ -122,6 +123,11 @@ void atmosphere_vapour_close(Atmosphere *atmosphere)
 }
 
 bool atmosphere_follows_weather(const Atmosphere *atmosphere) { return atmosphere->vapour != NULL; }
+
+bool atmosphere_band_follows(const Atmosphere *atmosphere, AirBand band)
+{
+    return atmosphere->vapour && (band == AIR_PAN || atmosphere->vapour_channel[band] >= 0);
+}
 
 double atmosphere_vapour_kg_m3(const Atmosphere *atmosphere)
 {

@@ -24,15 +24,19 @@ static DropletRow row_at(DropletKind kind, double wavelength_m)
 DropletRow droplet_optics(DropletKind kind, AirBand band)
 {
     enum { steps = 16 };
-    double low_m, high_m, extinct = 0, scattered = 0, forward = 0;
-    air_band_edges(&low_m, &high_m, band);
-    for (int i = 0; i < steps; i++) {
-        const DropletRow row = row_at(kind, low_m + (high_m - low_m) * (i + 0.5) / steps);
-        extinct += row.extinction / steps;
-        scattered += row.extinction * row.albedo / steps;
-        forward += row.extinction * row.albedo * row.asymmetry / steps;
+    const SpectralBand      seen = channel_band(band);
+    const SpectralResponse *r = seen.response;
+    const double            low_m = seen.low_m, high_m = seen.high_m;
+    double                  extinct = 0, scattered = 0, forward = 0, weight = 0;
+    for (int i = 0; i < (r ? r->nodes : steps); i++) {
+        const DropletRow row = row_at(kind, r ? r->node_m[i] : low_m + (high_m - low_m) * (i + 0.5) / steps);
+        const double     w = r ? r->weight_m[i] : 1.0 / steps;
+        weight += w;
+        extinct += w * row.extinction;
+        scattered += w * row.extinction * row.albedo;
+        forward += w * row.extinction * row.albedo * row.asymmetry;
     }
-    return (DropletRow){0.5 * (low_m + high_m), extinct, scattered / extinct, forward / scattered};
+    return (DropletRow){0.5 * (low_m + high_m), extinct / weight, scattered / extinct, forward / scattered};
 }
 
 /* ---- amounts ---------------------------------------------------------------------------------- */

@@ -15,7 +15,8 @@ typedef struct DropletRow {
 enum { droplet_rows = 38 };
 extern const DropletRow droplet_table[droplet_kinds][droplet_rows]; /* rising wavelengths */
 
-/* The mean over a band, all wavelengths between its edges alike; straight between the rows, the end's beyond. */
+/* The mean over a band, weighted by its response, or all wavelengths between its edges alike; straight between the
+ * rows, the end's beyond. */
 DropletRow droplet_optics(DropletKind kind, AirBand band);
 
 #endif

@@ -30,9 +30,8 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
     if (status == STATUS_OK) status = detail_table_open(&world.detail, detail, detail_cut_off);
     PlanckTable **const planck[2] = {&world.planck_mwir, &world.planck_lwir};
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        double low_m, high_m;
-        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
-        status = planck_table_create(planck[k], low_m, high_m);
+        const SpectralBand band = channel_band((ChannelPlace)(SPECTRAL_MWIR + k));
+        status = planck_table_seen(planck[k], &band);
     }
     if (status != STATUS_OK) {
         world_close(&world);

@@ -135,8 +135,30 @@ double planck_band(double low_m, double high_m, double temp_k, double *derivativ
     return front * value * half * half;
 }
 
+double planck_seen(const SpectralBand *band, double temp_k, double *derivative)
+{
+    const SpectralResponse *r = band->response;
+    if (!r || !(temp_k > 0)) return planck_band(band->low_m, band->high_m, temp_k, derivative);
+    double sum = 0, slope = 0;
+    for (int i = 0; i < r->nodes; i++) {
+        const double light = r->weight_m[i] * planck_radiance(r->node_m[i], temp_k);
+        const double x = h_j_s * c_mps / (r->node_m[i] * k_j_k * temp_k);
+        sum += light;
+        slope += light * x / -expm1(-x);
+    }
+    if (derivative) *derivative = slope / temp_k;
+    return sum;
+}
+
 double planck_band_inverse(double low_m, double high_m, double radiance_w_m2_sr)
 {
+    const SpectralBand band = {low_m, high_m, NULL};
+    return planck_seen_inverse(&band, radiance_w_m2_sr);
+}
+
+double planck_seen_inverse(const SpectralBand *band, double radiance_w_m2_sr)
+{
+    const double low_m = band->low_m, high_m = band->high_m;
     if (!(low_m > 0 && high_m > low_m && radiance_w_m2_sr > 0 && isfinite(radiance_w_m2_sr))) return NAN;
 
     /* start as if the whole band were at its middle; ln L is convex and almost straight in u = 1 / T, so
@@ -147,7 +169,7 @@ double planck_band_inverse(double low_m, double high_m, double radiance_w_m2_sr)
     double       u = middle_m / hc_k * log1p(2 * h_j_s * c_mps * c_mps / m5 * (high_m - low_m) / radiance_w_m2_sr);
     for (int i = 0; i < 100; i++) {
         double       slope;
-        const double value = planck_band(low_m, high_m, 1 / u, &slope);
+        const double value = planck_seen(band, 1 / u, &slope);
         if (!(value > 0 && slope > 0)) {
             u *= 0.75; /* too cold: underflow */
             continue;
@@ -169,11 +191,11 @@ enum { table_cells = planck_table_cells, table_bins = 8192 };
 static const double table_low_k = 180, table_high_k = 1500;
 
 struct PlanckTable {
-    double low_m, high_m;
-    double u0, cells_per_u;
-    double knot[table_cells + 2];  /* radiance, falling: cell 0 is the hottest; and nothing below */
-    double c[table_cells][4];      /* L = c0 + t (c1 + t (c2 + t c3)), t = 0 .. 1 across the cell */
-    float  narrow[table_cells][4]; /* the same */
+    SpectralBand band;
+    double       u0, cells_per_u;
+    double       knot[table_cells + 2];  /* radiance, falling: cell 0 is the hottest; and nothing below */
+    double       c[table_cells][4];      /* L = c0 + t (c1 + t (c2 + t c3)), t = 0 .. 1 across the cell */
+    float        narrow[table_cells][4]; /* the same */
     /* start of the search for a radiance, by the leading bits of its double: nearly uniform in its logarithm, as
      * cells are */
     int      bin_shift;
@@ -214,12 +236,18 @@ static inline int cell_of_radiance(const PlanckTable *table, double radiance_w_m
 
 Status planck_table_create(PlanckTable **out, double low_m, double high_m)
 {
+    const SpectralBand band = {low_m, high_m, NULL};
+    return planck_table_seen(out, &band);
+}
+
+Status planck_table_seen(PlanckTable **out, const SpectralBand *band)
+{
+    const double low_m = band->low_m, high_m = band->high_m;
     if (!(low_m > 0 && high_m > low_m && isfinite(high_m))) return STATUS_BAD_VALUE;
     PlanckTable *table = calloc(1, sizeof *table);
     if (!table) return STATUS_NO_MEMORY;
 
-    table->low_m = low_m;
-    table->high_m = high_m;
+    table->band = *band;
     table->u0 = 1 / table_high_k;
     const double step = (1 / table_low_k - table->u0) / table_cells;
     table->cells_per_u = 1 / step;
@@ -228,7 +256,7 @@ Status planck_table_create(PlanckTable **out, double low_m, double high_m)
     for (int i = 0; i <= table_cells; i++) {
         const double u = table->u0 + i * step;
         double       slope;
-        const double value = planck_band(low_m, high_m, 1 / u, &slope);
+        const double value = planck_seen(band, 1 / u, &slope);
         slope *= -step / (u * u); /* per cell of u, from per kelvin */
         table->knot[i] = value;
         if (i > 0) {
@@ -253,8 +281,7 @@ void planck_table_destroy(PlanckTable *table) { free(table); }
 
 double planck_table_radiance(const PlanckTable *table, double temp_k)
 {
-    if (!(temp_k >= table_low_k && temp_k <= table_high_k))
-        return planck_band(table->low_m, table->high_m, temp_k, NULL);
+    if (!(temp_k >= table_low_k && temp_k <= table_high_k)) return planck_seen(&table->band, temp_k, NULL);
     const double at = (1 / temp_k - table->u0) * table->cells_per_u;
     int          cell = (int)at;
     if (cell < 0) cell = 0; /* rounding at the hot end */
@@ -294,8 +321,7 @@ static bool within_table(const PlanckTable *table, double radiance_w_m2_sr)
 
 double planck_table_temp(const PlanckTable *table, double radiance_w_m2_sr)
 {
-    if (!within_table(table, radiance_w_m2_sr))
-        return planck_band_inverse(table->low_m, table->high_m, radiance_w_m2_sr);
+    if (!within_table(table, radiance_w_m2_sr)) return planck_seen_inverse(&table->band, radiance_w_m2_sr);
     const int low = cell_of_radiance(table, radiance_w_m2_sr);
     /* the cubic bends so little within a cell that three Newton steps from the chord reach rounding */
     const double *c = table->c[low];

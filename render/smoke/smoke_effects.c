@@ -25,10 +25,9 @@ static double phase_per_sr(double asymmetry, double cosine)
 /* Below 500 K emission up to 1.1 um is negligible, and by Wien's law as small elsewhere: under 2e-5 W/(m2 sr). */
 static double glow_w_m2_sr(int band, double temp_k)
 {
-    double low_m, high_m;
-    air_band_edges(&low_m, &high_m, (AirBand)band);
-    if (band < effect_band_mwir && temp_k < 500 * fmin(1, 1.1e-6 / high_m)) return 0;
-    return planck_band(low_m, high_m, temp_k, NULL);
+    const SpectralBand seen = channel_band((ChannelPlace)band);
+    if (band < effect_band_mwir && temp_k < 500 * fmin(1, 1.1e-6 / seen.high_m)) return 0;
+    return planck_seen(&seen, temp_k, NULL);
 }
 
 typedef struct Placed {

@@ -42,7 +42,7 @@ typedef struct Check {
 /* Tables already validated for an earlier file are not read again. */
 static struct {
     bool   bundled, models;
-    char   air[1024];
+    char   air[frame_model_size];
     double visibility_m;
 } known;
 
@@ -149,11 +149,13 @@ static bool atmosphere_is_valid(const Check *c)
     Atmosphere   *atmosphere = NULL;
     const Config *config = c->config;
     const double  visibility_m = droplets_haze_m(config->weather.visibility_m, frame_world_fog(config));
-    if (strcmp(known.air, config->weather.atmosphere) == 0 && known.visibility_m == visibility_m) return true;
-    const bool there = atmosphere_open_at(&atmosphere, config->weather.atmosphere, visibility_m) == STATUS_OK;
+    char          model[frame_model_size];
+    const bool    named = frame_world_model(model, config) == STATUS_OK;
+    if (named && strcmp(known.air, model) == 0 && known.visibility_m == visibility_m) return true;
+    const bool there = named && atmosphere_open_at(&atmosphere, model, visibility_m) == STATUS_OK;
     atmosphere_close(atmosphere);
     if (there) {
-        snprintf(known.air, sizeof known.air, "%s", config->weather.atmosphere);
+        snprintf(known.air, sizeof known.air, "%s", model);
         known.visibility_m = visibility_m;
     }
     return there || report(c, "weather.atmosphere", "us1976 is always available");

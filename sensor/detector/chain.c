@@ -47,9 +47,8 @@ static bool has_fixed(const SensorPreset *p)
 double chain_wavelength_m(const SensorPreset *p, int channel)
 {
     static const double ground_k = 300, sun_k = 5772; /* the sun: IAU 2015 resolution B3 */
-    double              low_m, high_m;
-    preset_band(&low_m, &high_m, p->band, p->optical, channel);
-    return photon_mean_wavelength_m(low_m, high_m, p->band == BAND_OPTICAL ? sun_k : ground_k);
+    const SpectralBand  seen = preset_seen(p->band, p->optical, channel);
+    return photon_seen_wavelength_m(&seen, p->band == BAND_OPTICAL ? sun_k : ground_k);
 }
 
 static Status channel_create(Channel *c, const Chain *chain, int index, int places)
@@ -200,8 +199,9 @@ double chain_sigma(const Chain *c, int channel, double radiance)
 double chain_netd_k(const Chain *c, double temp_k)
 {
     const PhotonDetector *d = &c->preset.photons;
+    const SpectralBand    seen = {d->low_m, d->high_m, d->response};
     double                slope;
-    const double          radiance = planck_band(d->low_m, d->high_m, temp_k, &slope);
+    const double          radiance = planck_seen(&seen, temp_k, &slope);
     return chain_sigma(c, 0, radiance) / slope;
 }
 

@@ -52,6 +52,46 @@ double photon_mean_wavelength_m(double low_m, double high_m, double temp_k)
     return moment / photons;
 }
 
+double photon_seen(const SpectralBand *band, double temp_k, double *derivative)
+{
+    const SpectralResponse *r = band->response;
+    if (!r || !(temp_k > 0)) return photon_band(band->low_m, band->high_m, temp_k, derivative);
+    const double hc = h_j_s * c_mps;
+    double       sum = 0, slope = 0;
+    for (int i = 0; i < r->nodes; i++) {
+        const double w_m = r->node_m[i], x = hc / (w_m * k_j_k * temp_k);
+        const double q = r->weight_m[i] * planck_radiance(w_m, temp_k) * w_m / hc;
+        sum += q;
+        slope += q * x / (temp_k * -expm1(-x));
+    }
+    if (derivative) *derivative = slope;
+    return sum;
+}
+
+double photon_seen_wavelength_m(const SpectralBand *band, double temp_k)
+{
+    const SpectralResponse *r = band->response;
+    if (!r || !(temp_k > 0)) return photon_mean_wavelength_m(band->low_m, band->high_m, temp_k);
+    double photons = 0, moment = 0;
+    for (int i = 0; i < r->nodes; i++) {
+        const double q = r->weight_m[i] * planck_radiance(r->node_m[i], temp_k) * r->node_m[i];
+        photons += q;
+        moment += q * r->node_m[i];
+    }
+    return moment / photons;
+}
+
+static SpectralBand seen_by(const PhotonDetector *d) { return (SpectralBand){d->low_m, d->high_m, d->response}; }
+
+/* Mean wavelength of equal light at all wavelengths. */
+static double middle_m(const SpectralBand *band)
+{
+    const SpectralResponse *r = band->response;
+    double                  sum = 0, moment = 0;
+    for (int i = 0; r && i < r->nodes; i++) sum += r->weight_m[i], moment += r->weight_m[i] * r->node_m[i];
+    return r ? moment / sum : 0.5 * (band->low_m + band->high_m);
+}
+
 double photon_etendue(const PhotonDetector *d)
 {
     const double solid_angle_sr = pi_rad / (4 * d->f_number * d->f_number + 1);
@@ -60,8 +100,9 @@ double photon_etendue(const PhotonDetector *d)
 
 double photon_electrons(const PhotonDetector *d, double temp_k, double *per_k)
 {
-    double       slope;
-    const double k = photon_etendue(d), q = photon_band(d->low_m, d->high_m, temp_k, &slope);
+    double             slope;
+    const SpectralBand seen = seen_by(d);
+    const double       k = photon_etendue(d), q = photon_seen(&seen, temp_k, &slope);
     if (per_k) *per_k = k * slope;
     return k * q;
 }
@@ -88,16 +129,17 @@ Status photon_table_create(PhotonTable **out, const PhotonDetector *d, bool emit
 {
     PhotonTable *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
-    const double k = photon_etendue(d);
-    t->ratio[0] = k * 0.5 * (d->low_m + d->high_m) / (h_j_s * c_mps);
+    const SpectralBand seen = seen_by(d);
+    const double       k = photon_etendue(d);
+    t->ratio[0] = k * middle_m(&seen) / (h_j_s * c_mps);
     if (emitted) {
-        t->low = log(planck_band(d->low_m, d->high_m, 180, NULL));
-        t->high = log(planck_band(d->low_m, d->high_m, 1500, NULL));
+        t->low = log(planck_seen(&seen, 180, NULL));
+        t->high = log(planck_seen(&seen, 1500, NULL));
         t->per_log = (knots - 1) / (t->high - t->low);
         for (int i = 0; i < knots; i++) {
             const double radiance = exp(t->low + i / t->per_log);
-            const double temp_k = planck_band_inverse(d->low_m, d->high_m, radiance);
-            t->ratio[i] = k * photon_band(d->low_m, d->high_m, temp_k, NULL) / radiance;
+            const double temp_k = planck_seen_inverse(&seen, radiance);
+            t->ratio[i] = k * photon_seen(&seen, temp_k, NULL) / radiance;
         }
     }
     *out = t;

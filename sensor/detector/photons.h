@@ -2,7 +2,7 @@
 #ifndef SENSOR_DETECTOR_PHOTONS_H
 #define SENSOR_DETECTOR_PHOTONS_H
 
-#include "pitviper.h"
+#include "pitviper_response.h"
 
 /* In-band photon radiance of a blackbody, photons / (s m2 sr), and its derivative in T (may be NULL). 0 < low_m <
  * high_m, temp_k > 0, else NaN. Relative error < 1e-10 for 180 .. 1500 K (tests/sensor/test_photons.c, against 25
@@ -13,13 +13,18 @@ double photon_band(double low_m, double high_m, double temp_k, double *derivativ
  * band. 4.36 um for 3.4 .. 4.8 um at 300 K, whose centre is 4.1. Ranges and error as photon_band. */
 double photon_mean_wavelength_m(double low_m, double high_m, double temp_k);
 
+/* Both of what a band sees, each photon weighted by its response. */
+double photon_seen(const SpectralBand *band, double temp_k, double *derivative);
+double photon_seen_wavelength_m(const SpectralBand *band, double temp_k);
+
 typedef struct PhotonDetector {
-    double low_m, high_m;          /* the band */
-    double f_number, transmission; /* of the optics, including the loss by obscuration */
-    double qe;                     /* electrons per photon on the whole pixel */
-    double pitch_m, integration_s;
-    double dark_e, read_e; /* in the integration time; rms */
-    double well_e;
+    double                  low_m, high_m; /* the band */
+    const SpectralResponse *response; /* NULL: all of it alike; the greatest is 1, at which qe and transmission are */
+    double                  f_number, transmission; /* of the optics, including the loss by obscuration */
+    double                  qe;                     /* electrons per photon on the whole pixel */
+    double                  pitch_m, integration_s;
+    double                  dark_e, read_e; /* in the integration time; rms */
+    double                  well_e;
 } PhotonDetector;
 
 /* Electrons per (photon / (s m2 sr)): solid angle pi / (4 N^2 + 1) x pitch^2 x transmission x QE x time. */
@@ -31,7 +36,7 @@ double photon_electrons(const PhotonDetector *d, double temp_k, double *per_k);
 double photon_netd_k(const PhotonDetector *d, double temp_k, double count_e, double extra_e);
 
 /* Electrons as a function of in-band radiance: for emission from the photons of the blackbody of that radiance, for
- * reflected light from the photon energy at the band centre. */
+ * reflected light from the photon energy at the band centre (of a response, the mean wavelength that it weighs). */
 typedef struct PhotonTable PhotonTable;
 /* emitted: false uses the band centre for all radiances. */
 Status photon_table_create(PhotonTable **out, const PhotonDetector *d, bool emitted);

@@ -60,15 +60,21 @@ static const TableColumn columns[] = {
 static const TableFormat format = {"sensors", columns, sizeof columns / sizeof *columns,
                                    .next = "etc/sensors.csv explains the columns"};
 
-void preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel)
+SpectralBand preset_seen(Band band, OpticalChannels optical, int channel)
 {
     static const AirBand rgb[3] = {AIR_R, AIR_G, AIR_B};
-    *low_m = *high_m = NAN;
-    if (band == BAND_RADAR) return;
+    if (band == BAND_RADAR) return (SpectralBand){NAN, NAN, NULL};
     AirBand air = band == BAND_MWIR ? AIR_MWIR : band == BAND_LWIR ? AIR_LWIR : AIR_PAN;
     if (band == BAND_OPTICAL && optical == OPTICAL_NIR) air = AIR_NIR;
     if (band == BAND_OPTICAL && optical == OPTICAL_RGB && channel >= 0) air = rgb[channel];
-    air_band_edges(low_m, high_m, air);
+    return channel_band(air);
+}
+
+void preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel)
+{
+    const SpectralBand seen = preset_seen(band, optical, channel);
+    *low_m = seen.low_m;
+    *high_m = seen.high_m;
 }
 
 PhotonDetector preset_photons(const SensorPreset *p)
@@ -83,7 +89,8 @@ PhotonDetector preset_photons(const SensorPreset *p)
 
 void preset_refresh(SensorPreset *p)
 {
-    preset_band(&p->photons.low_m, &p->photons.high_m, p->band, p->optical, -1);
+    const SpectralBand seen = preset_seen(p->band, p->optical, -1);
+    p->photons.low_m = seen.low_m, p->photons.high_m = seen.high_m, p->photons.response = seen.response;
     p->photons.dark_e = p->dark_e_s * p->photons.integration_s;
     p->ratio.sigma[NOISE_TVH] = 1;
 }

@@ -15,8 +15,8 @@ typedef struct SensorPreset {
     OpticalChannels        optical; /* its response in the optical band */
     double                 width_px, height_px, hfov_deg;
     double                 lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/scene/view.h); R and B over G, less 1 */
-    PhotonDetector         photons;             /* low_m, high_m: the band's; dark_e for integration_s; of one stage */
-    double                 tdi;                 /* stages whose electrons are summed; 0 or 1: no TDI */
+    PhotonDetector         photons; /* low_m .. response: the band's; dark_e for integration_s; of one stage */
+    double                 tdi;     /* stages whose electrons are summed; 0 or 1: no TDI */
     double                 obscuration, footprint, jitter_px;
     bool                   auto_exposure;
     double                 dark_e_s;
@@ -45,6 +45,8 @@ void preset_refresh(SensorPreset *preset);
 /* Edges of a band in wavelength, as the renderer has them. Channel 0 .. 2 of OPTICAL_RGB: R, G, B; -1: the whole band.
  */
 void preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel);
+/* The same with the channel's response. */
+SpectralBand preset_seen(Band band, OpticalChannels optical, int channel);
 
 /* ---- sheet.c: data sheets ----------------------------------------------------------------------- */
 

@@ -78,11 +78,11 @@ void camera_expose(TruthNoise *noise, Camera *camera, const Picture *picture, co
     if (chain[BAND_OPTICAL])
         noise->optical_w_m2_sr = chain_sigma(chain[BAND_OPTICAL], 0, mean_radiance(picture, BAND_OPTICAL));
     for (int b = BAND_MWIR; b <= BAND_LWIR; b++) {
-        double      *netd_k = b == BAND_MWIR ? &noise->netd_mwir_k : &noise->netd_lwir_k, low_m, high_m, slope;
+        double      *netd_k = b == BAND_MWIR ? &noise->netd_mwir_k : &noise->netd_lwir_k, slope;
         const double mean = chain[b] ? mean_radiance(picture, b) : 0;
         if (!(mean > 0)) continue;
-        preset_band(&low_m, &high_m, (Band)b, OPTICAL_PAN, -1);
-        planck_band(low_m, high_m, planck_band_inverse(low_m, high_m, mean), &slope);
+        const SpectralBand seen = preset_seen((Band)b, OPTICAL_PAN, -1);
+        planck_seen(&seen, planck_seen_inverse(&seen, mean), &slope);
         *netd_k = chain_sigma(chain[b], 0, mean) / slope;
     }
 }
@@ -106,17 +106,17 @@ static DetectorConfig detector_of(const DisplaysOf *of, int band)
         d.level_low = 0;
         d.level_high = c->detector.optical_high_w_m2_sr;
     } else {
-        const bool mwir = band == BAND_MWIR;
-        double     low_m, high_m, slope; /* W/(m2 sr K) at 300 K, where the figure is defined */
-        preset_band(&low_m, &high_m, (Band)band, OPTICAL_PAN, -1);
-        const double at_300_k = planck_band(low_m, high_m, 300, &slope);
+        const bool         mwir = band == BAND_MWIR;
+        double             slope; /* W/(m2 sr K) at 300 K, where the figure is defined */
+        const SpectralBand seen = preset_seen((Band)band, OPTICAL_PAN, -1);
+        const double       at_300_k = planck_seen(&seen, 300, &slope);
         d.noise_sigma = c->detector.noise * slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
         d.highlight = 1.5; /* with fire on up to half of the pixels normal noise keeps 0.56 of its contrast */
-        d.fire_from = low_m > 2.9e-6 ? planck_band(low_m, high_m, hottest_ground_k, NULL) : INFINITY;
+        d.fire_from = seen.low_m > 2.9e-6 ? planck_seen(&seen, hottest_ground_k, NULL) : INFINITY;
         d.plateau = c->detector.level == DISPLAY_LEVEL_PLATEAU ? c->detector.plateau : 0;
         d.min_span = 2 * slope; /* never stretch less than 2 K over the display */
-        d.level_low = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
-        d.level_high = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
+        d.level_low = planck_seen(&seen, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
+        d.level_high = planck_seen(&seen, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
         if (chain) d.min_span = chain_counts_at(chain, 0, at_300_k + d.min_span) - chain_counts_at(chain, 0, at_300_k);
         if (chain && d.fire_from < INFINITY)
             d.fire_from = fmin(chain_counts_at(chain, 0, d.fire_from), chain_full(chain));

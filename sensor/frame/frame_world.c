@@ -21,12 +21,24 @@ WeatherFog frame_world_fog(const Config *config)
     return fog[config->weather.fog];
 }
 
+Status frame_world_model(char out[frame_model_size], const Config *config)
+{
+    Weather weather = weather_default();
+    weather.air_temp_k = config->weather.air_temp_k;
+    weather.humidity = 0.01 * config->weather.humidity_pct;
+    const double kg_m3 = isnan(weather.air_temp_k) ? NAN : weather_vapour_kg_m3(&weather);
+    return atmosphere_nearest(out, frame_model_size, config->weather.atmosphere, weather.air_temp_k, kg_m3);
+}
+
 Status frame_world_air(World *world, const Config *config)
 {
+    char model[frame_model_size];
     world_cool(world);
     atmosphere_close(world->atmosphere);
     world->atmosphere = NULL;
-    return atmosphere_open_at(&world->atmosphere, config->weather.atmosphere,
+    const Status status = frame_world_model(model, config);
+    if (status != STATUS_OK) return status;
+    return atmosphere_open_at(&world->atmosphere, model,
                               droplets_haze_m(config->weather.visibility_m, frame_world_fog(config)));
 }
 

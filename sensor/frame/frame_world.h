@@ -13,6 +13,9 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
 Status frame_world_open(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
                         const LocalFrame *frame, const char *isa);
 Status frame_world_air(World *world, const Config *config);
+/* The model of the atmosphere that the settings name; of a set by weather the one nearest to theirs. */
+enum { frame_model_size = 1200 };
+Status frame_world_model(char out[frame_model_size], const Config *config);
 /* The setting weather.fog. */
 WeatherFog frame_world_fog(const Config *config);
 void       frame_world_radar(World *world, const Config *config);

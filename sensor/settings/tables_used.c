@@ -73,14 +73,16 @@ static Status list_files(FILE *to, const char *folder, const char *below, int de
     return status;
 }
 
-/* Adds a folder of some sixty files as one entry: the hash of lines of their paths and hashes. */
-static Status add_folder(TablesUsed *out, const char *name)
+/* Adds a folder of some sixty files as one entry: the hash of lines of their paths and hashes. own: its path; NULL: it
+ * is the one of that name in etc. */
+static Status add_folder(TablesUsed *out, const char *name, const char *own)
 {
     char       folder[path_size], *text = NULL;
     size_t     octets = 0;
     TableUsed *t = &out->table[out->count];
-    if (out->count == tables_used_max || !etc_path(folder, sizeof folder, name) || access(folder, R_OK) != 0)
-        return STATUS_OK;
+    const bool found =
+        own ? snprintf(folder, sizeof folder, "%s", own) < (int)sizeof folder : etc_path(folder, sizeof folder, name);
+    if (out->count == tables_used_max || !found || access(folder, R_OK) != 0) return STATUS_OK;
     FILE *list = open_memstream(&text, &octets);
     if (!list) return STATUS_NO_MEMORY;
     Status     status = list_files(list, folder, "", 0);
@@ -148,7 +150,8 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
         status = add_csv_of(out, folder, "radar/");
     if (status == STATUS_OK && *config->radar.given) status = add_in(out, "radar/", config->radar.given);
     snprintf(name, sizeof name, "atmosphere/%.100s", config->weather.atmosphere);
-    if (status == STATUS_OK) status = add_folder(out, name);
+    const char *own = strpbrk(config->weather.atmosphere, "/.") ? config->weather.atmosphere : NULL;
+    if (status == STATUS_OK) status = add_folder(out, name, own);
     if (*config->radar.table && status == STATUS_OK) status = add_in(out, "radar/", config->radar.table);
     if (*config->sensor.table && status == STATUS_OK) status = add_in(out, "", config->sensor.table);
     if (strpbrk(config->weather.day, "/.") && status == STATUS_OK)

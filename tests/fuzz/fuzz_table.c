@@ -38,7 +38,9 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
                                        "radar/ground.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
-    switch (index % (names + 6)) {
+    switch (index % (names + 7)) {
+    case names + 6:
+        return fuzz_seed_text(out, "wavelength_um,response\n3.6,0\n3.8,1\n4.7,1\n4.9,0\n");
     case names + 5:
         return fuzz_seed_text(out, "az_deg,el_deg,f_ghz,hh_dbsm,vv_dbsm\n0,0,35,1,2\n180,0,35,3,4\n300,0,35,-7,1e1\n");
     case names + 4:
@@ -57,7 +59,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     default:
         break;
     }
-    FILE *file = etc_path(path, sizeof path, name[index % (names + 6)]) ? fopen(path, "rb") : NULL;
+    FILE *file = etc_path(path, sizeof path, name[index % (names + 7)]) ? fopen(path, "rb") : NULL;
     if (!file) return 0;
     const size_t size = fread(out, 1, fuzz_seed_octets, file);
     fclose(file);
@@ -109,6 +111,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (file < 0) return 0;
 
     (void)channels_check(path);
+    SpectralResponse *response;
+    if (response_open(&response, path) == STATUS_OK) {
+        if (!(response->nodes > 0 && response->nodes <= response_nodes_most)) abort();
+        for (int i = 0; i < response->nodes; i++)
+            if (!(response->node_m[i] >= 0.3e-6 && response->node_m[i] <= 30e-6 && response->weight_m[i] > 0)) abort();
+        response_close(response);
+    }
     SensorPreset sheet;
     if (preset_read_sheet(&sheet, path) == STATUS_OK) {
         /* what the detector's chain builds on */

@@ -30,8 +30,8 @@ MAY = {
     'sensor': ('dis/*', 'terrain/*', 'entities/*', 'render/*'),
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
 }
-BASE_HEADERS = ('pitviper.h', 'pitviper_cache.h', 'pitviper_channels.h', 'pitviper_confine.h', 'pitviper_file.h', 'pitviper_kept.h', 'pitviper_library.h', 'pitviper_output.h', 'pitviper_sha256.h',
-                'pitviper_settings.h', 'pitviper_simd.h', 'pitviper_table.h')
+BASE_HEADERS = ('pitviper.h', 'pitviper_cache.h', 'pitviper_channels.h', 'pitviper_confine.h', 'pitviper_file.h', 'pitviper_kept.h', 'pitviper_library.h', 'pitviper_output.h', 'pitviper_response.h',
+                'pitviper_settings.h', 'pitviper_sha256.h', 'pitviper_simd.h', 'pitviper_table.h')
 
 # Libraries that one file, or one folder, knows: header, places.
 LIBRARIES = (

@@ -381,9 +381,60 @@ static void survives_any_spoiling(void **state)
     CHECK(refused > 500 && opened > 50); /* both ways are walked */
 }
 
+/* A set by weather. Distances by hand: |dT| / 5 + |ln(vapour ratio)| / 0.18232. */
+static void a_set_has_the_nearest(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/test_set_XXXXXX", path[64], want[96], got[256];
+    CHECK(mkdtemp(folder) != NULL);
+    snprintf(path, sizeof path, "%s/weathers.csv", folder);
+    FILE *file = fopen(path, "w");
+    CHECK(file != NULL &&
+          fputs("vapour_g_m3,folder,air_temp_k\n2,dry,300\n13,own,296\n19,wet,310\n0,frost,250\n", file) >= 0 &&
+          fclose(file) == 0);
+    static const struct {
+        double      temp_k, g_m3;
+        const char *name;
+    } row[] = {
+        {300, 15.2, "own"},   /* 0.8 + 0.86; dry 11.1, wet 2 + 1.22 */
+        {304, 15.2, "wet"},   /* 1.2 + 1.22; own 1.6 + 0.86 = 2.46 */
+        {303.6, 15.2, "own"}, /* 1.52 + 0.86 = 2.38; wet 1.28 + 1.22 = 2.50 */
+        {300, 5.05, "dry"},   /* 5.08; own 0.8 + 5.19 = 5.99 */
+        {300, 6, "own"},      /* 0.8 + 4.24 = 5.04; dry 6.03 */
+        {251, 0, "frost"},    {249, 1e-3, "frost"},
+    };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        CHECK(atmosphere_nearest(got, sizeof got, folder, row[i].temp_k, 1e-3 * row[i].g_m3) == STATUS_OK);
+        snprintf(want, sizeof want, "%s/%s", folder, row[i].name);
+        assert_string_equal(got, want);
+    }
+    CHECK(atmosphere_nearest(got, sizeof got, folder, NAN, NAN) == STATUS_BAD_VALUE);
+    CHECK(atmosphere_nearest(got, 20, folder, 300, 0.01) == STATUS_BAD_VALUE); /* no room */
+    Atmosphere *none = NULL;
+    CHECK(atmosphere_open_at(&none, folder, 23000) == STATUS_BAD_VALUE && none == NULL);
+    static const char *const wrong[] = {"",
+                                        "folder,air_temp_k,vapour_g_m3\n",
+                                        "folder,air_temp_k\na,300\n",
+                                        "folder,air_temp_k,vapour_g_m3\n../a,300,1\n",
+                                        "folder,air_temp_k,vapour_g_m3\n..,300,1\n",
+                                        "folder,air_temp_k,vapour_g_m3\na,27,1\n",
+                                        "folder,air_temp_k,vapour_g_m3\n,300,1\n"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        file = fopen(path, "w");
+        CHECK(file != NULL && fputs(wrong[i], file) >= 0 && fclose(file) == 0);
+        CHECK(atmosphere_nearest(got, sizeof got, folder, 300, 0.01) == STATUS_BAD_VALUE);
+    }
+    CHECK(remove(path) == 0);
+    /* without it, and of a name, the model is itself */
+    CHECK(atmosphere_nearest(got, sizeof got, folder, NAN, NAN) == STATUS_OK && strcmp(got, folder) == 0);
+    CHECK(atmosphere_nearest(got, sizeof got, "us1976", NAN, NAN) == STATUS_OK && strcmp(got, "us1976") == 0);
+    CHECK(rmdir(folder) == 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_set_has_the_nearest),
         cmocka_unit_test_setup_teardown(refuses_and_says_where, make_small, remove_small),
         cmocka_unit_test_setup_teardown(its_own_air_stays, make_small, remove_small),
         cmocka_unit_test_setup_teardown(visibilities_of_any_shape, make_small, remove_small),

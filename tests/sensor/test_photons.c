@@ -103,12 +103,51 @@ static void mean_wavelengths_are_those_of_the_photons(void **state)
     CHECK(isnan(photon_mean_wavelength_m(5e-6, 4e-6, 300)) && isnan(photon_mean_wavelength_m(3e-6, 4e-6, 0)));
 }
 
+/* A channel's own response, a triangle of 8, 10 and 12 um: photons of a black body, their slope and mean wavelength by
+ * mpmath 1.3 (quad, 30 digits); electrons of them times pi / (4 N^2 + 1), the pixel, time, optics and QE; of reflected
+ * light a watt has as many photons as at the triangle's middle, 10 um. */
+static void detector_counts_what_it_sees(void **state)
+{
+    (void)state;
+    static const double want[][4] = {{180, 4.1056358083138e+19, 10.2561272504},
+                                     {300, 9.8346695569212e+20, 10.0578888428},
+                                     {1000, 3.7988348161917e+22, 9.85886643154}};
+    char                path[] = "/tmp/test_photons_XXXXXX";
+    const int           handle = mkstemp(path);
+    SpectralResponse   *r = NULL;
+    FILE               *file = handle >= 0 ? fdopen(handle, "w") : NULL;
+    CHECK(file != NULL && fputs("wavelength_um,response\n8,0\n10,1\n12,0\n", file) >= 0 && fclose(file) == 0);
+    CHECK(response_open(&r, path) == STATUS_OK && remove(path) == 0);
+    PhotonDetector     d = reference_detector(8, 12, 100e-6);
+    const SpectralBand band = {d.low_m, d.high_m, r};
+    d.response = r;
+    for (int i = 0; i < 3; i++) {
+        const double temp_k = want[i][0], step_k = 1e-3 * temp_k;
+        double       slope;
+        CHECK_NEAR(photon_seen(&band, temp_k, &slope) / want[i][1], 1, 1e-8);
+        CHECK_NEAR(photon_seen_wavelength_m(&band, temp_k) * 1e6 / want[i][2], 1, 1e-8);
+        const double rise = photon_seen(&band, temp_k + step_k, NULL) - photon_seen(&band, temp_k - step_k, NULL);
+        CHECK_NEAR(rise / (2 * step_k) / slope, 1, 2e-5); /* (1e-3)^2 / 6 times (x - 2)^2, x = 8 and less */
+    }
+    const double etendue = pi_rad / 17 * 9e-10 * 0.56 * 1e-4, per_w = 10e-6 / (6.62607015e-34 * 299792458.0);
+    PhotonTable *emitted = NULL, *reflected = NULL;
+    CHECK_NEAR(photon_electrons(&d, 300, NULL) / (etendue * want[1][1]), 1, 1e-8);
+    CHECK(photon_table_create(&emitted, &d, true) == STATUS_OK);
+    CHECK(photon_table_create(&reflected, &d, false) == STATUS_OK);
+    CHECK_NEAR(photon_table_electrons(emitted, 19.550490581936) / (etendue * want[1][1]), 1, 1e-6);
+    CHECK_NEAR(photon_table_electrons(reflected, 1) / (etendue * per_w), 1, 1e-8);
+    photon_table_destroy(emitted);
+    photon_table_destroy(reflected);
+    response_close(r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(photons_agree_with_25_digits),
         cmocka_unit_test(netd_from_first_principles),
         cmocka_unit_test(table_agrees_with_the_integral),
+        cmocka_unit_test(detector_counts_what_it_sees),
         cmocka_unit_test(mean_wavelengths_are_those_of_the_photons),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -95,11 +95,13 @@ for path in $(grep -oE '`(etc|dis|terrain|render|sensor|entities|tests)/[a-z0-9_
     check "listed and there: $path" [ -e "$path" ]
 done
 
-# ---- a channel: 8-14 um in lwir's place, by files alone; its figures are lwir's own
+# ---- a channel: 8-14 um in lwir's place, by files alone, through a response of its own; its figures are lwir's own
 etc=$tmp/etc
 mkdir "$etc"
 cp -r etc/*.csv etc/atmosphere "$etc/"
-echo 'lwir_wide,8,14,emissive,lwir,a microbolometer' >>"$etc/channels.csv"
+awk -F, '/^#/ { print; next } { print $0 (++n == 1 ? ",response" : ",") }' "$etc/channels.csv" >"$etc/channels.new" && mv "$etc/channels.new" "$etc/channels.csv"
+echo 'lwir_wide,8,14,emissive,lwir,a microbolometer,bolometer.csv' >>"$etc/channels.csv"
+printf 'wavelength_um,response\n8,0.9\n11,1\n14,0.5\n' >"$etc/bolometer.csv"
 echo 'lwir_wide,8,14,1.9' >>"$etc/atmosphere/bands.csv"
 column() { # column FILE OLD NEW: a copy of a column at the end
     awk -F, -v old="$2" -v new="$3" '/^#/ || !NF { print; next } !h { for (i = 1; i <= NF; i++) if ($i == old) h = i; print $0 "," new; next } { print $0 "," $h }' "$1" >"$1.new" && mv "$1.new" "$1"
@@ -137,6 +139,12 @@ check "channel: a picture" [ -s "$tmp/wide/frames/lwir_wide/000000.exr" ]
 check "channel: truth has its sums" grep -q '"lwir_wide":{"contrast_k"' "$tmp/wide/truth.jsonl"
 check "channel: a detector looks at it" grep -q '^lwir_wide: bolometer, F/2' "$tmp/stdout"
 check "channel: run.json" grep -q 'optical,lwir_wide' "$tmp/wide/run.json"
+check "channel: its response is among the tables used" grep -q '"bolometer.csv"' "$tmp/wide/run.json"
+check "channel: its air is not the weather's, which is said" grep -qE '^air: lwir_wide keeps the clear air of us1976 \(15 C and 5\.9 g/m3 .* the weather has 15 C and 7\.7' "$tmp/stdout"
+sed -i 's/^11,1$/11,0.95/' "$etc/bolometer.csv"
+PITVIPER_ETC=$etc run replay "$tmp/work/exercise.pcap" --bands lwir_wide --out "$tmp/o"
+check "channel: a response that is not relative to its greatest" complained 'bolometer.csv: the greatest response is 0.95, and must be 1'
+sed -i 's/^11,0.95$/11,1/' "$etc/bolometer.csv"
 sed -i 's/,ext_lwir_wide/,ext_other/' "$etc/effects.csv"
 PITVIPER_ETC=$etc run replay "$tmp/work/exercise.pcap" --bands lwir_wide --size 64x48 --only 0 --no-png --threads 1 "${coarse[@]}" --out "$tmp/wide2"
 check "channel: a column that is missing" complained 'effects.csv.*ext_lwir_wide'

@@ -2,9 +2,11 @@
 """Fills a model's folders with the files of one more channel, <file>_<channel>.csv, by LOWTRAN7.
 
     etc/atmosphere/make/channel.py MODEL NAME LOW_UM HIGH_UM [--kind reflective|emissive|both] [--only METRES]
+        [--response FILE]
 
 The heights, angles and paths are those of the files beside them. Needs numpy and gfortran, and the network once
-(lowtran.py). What is there already is not made again. A reflective channel takes some minutes a model.
+(lowtran.py). What is there already is not made again. A reflective channel takes some minutes a model. --response: the
+file of etc/channels.csv (wavelength_um, response); every figure, the sunlight above the air too, is weighted by it.
 
 Haze's phase function is drawn between those of the channels beside in the logarithms of both; clear air's scattering
 is that of nir times the ratio of Rayleigh's law. Scattered sunlight of an emissive channel alone is not computed.
@@ -39,8 +41,32 @@ def keys_of(path, count):
     return list(dict.fromkeys(tuple(row[:count]) for row in rows_of(path)[1]))
 
 
+def read_response(path, low_um, high_um):
+    """Wavelengths, um, and response; what pitviper_response.c refuses is refused."""
+    head, rows = rows_of(path)
+    if "wavelength_um" not in head or "response" not in head:
+        raise SystemExit(f"{path}: columns wavelength_um and response are needed")
+    w, r = (np.array([row[head.index(c)] for row in rows]) for c in ("wavelength_um", "response"))
+    if len(w) < 2 or not np.all(np.diff(w) > 0) or not np.all((r >= 0) & (r <= 1)) or abs(r.max() - 1) > 1e-3:
+        raise SystemExit(f"{path}: rising wavelengths and a response of 0 to 1 are needed, whose greatest is 1")
+    if abs(w[0] / low_um - 1) > 1e-9 or abs(w[-1] / high_um - 1) > 1e-9:
+        raise SystemExit(f"{path}: goes from {w[0]:g} to {w[-1]:g} um, the channel from {low_um:g} to {high_um:g}")
+    return w, r
+
+
+def seen(wavenumber, value, response):
+    """Integral of straight lines between the points times the response's straight lines between its own."""
+    own = 1e4 / response[0][::-1]
+    at = np.union1d(wavenumber[(wavenumber > own[0]) & (wavenumber < own[-1])], own)
+    # twice as fine as both: the product of two straight lines is no straight line
+    at = np.union1d(at, (at[1:] + at[:-1]) / 2)
+    y = np.interp(at, wavenumber, value) * np.interp(1e4 / at, *response)
+    return float(np.sum((y[1:] + y[:-1]) * np.diff(at)) / 2)
+
+
 class Channel:
-    def __init__(self, model, name, low_um, high_um, kind, work):
+    def __init__(self, model, name, low_um, high_um, kind, work, response=None):
+        self.response = response
         self.model, self.name, self.kind, self.work = model, name, kind, work
         self.low_um, self.high_um = low_um, high_um
         self.folder = os.path.join(tables.HERE, model)
@@ -55,13 +81,16 @@ class Channel:
         return lt.run(self.work, [lt.case(self.model, visibility_km, low=low, high=high, **c, **more) for c in cases])
 
     def integral(self, wavenumber, value):
-        return lt.integral(wavenumber, value, self.name)
+        if self.response is None:
+            return lt.integral(wavenumber, value, self.name)
+        return seen(wavenumber, value, self.response)
 
     def write(self, folder, file, note, head, rows):
         keys = sum(not c.endswith(self.name) and not c.startswith(("depth_", "thermal_")) for c in head.split(","))
         path = os.path.join(folder, f"{file}_{self.name}.csv")
         with open(path + ".part", "w", encoding="ascii") as out:
-            out.write(f"# LOWTRAN7 rev. 4.2 in double precision, {self.low_um:g}-{self.high_um:g} um{note}\n{head}\n")
+            how = "" if self.response is None else " by a response"
+            out.write(f"# LOWTRAN7 rev. 4.2 in double precision, {self.low_um:g}-{self.high_um:g} um{how}{note}\n{head}\n")
             for row in rows:
                 # what stands first is a key of the file beside, to the last digit
                 out.write(",".join(f"{x:.9g}" if i < keys else f"{x:.5g}" for i, x in enumerate(row)) + "\n")
@@ -86,6 +115,8 @@ class Channel:
     def rayleigh(self, low_um, high_um, light_um=None):
         v = np.linspace(1e4 / high_um, 1e4 / low_um, 400)
         weight = lt.planck(v, 5800) if light_um is None else lt.planck(v, 300)
+        if self.response is not None and (low_um, high_um) == (self.low_um, self.high_um):
+            weight = weight * np.interp(1e4 / v, *self.response)
         return np.sum(weight * v ** 4 / (9.38076e18 - 1.08426e9 * v ** 2)) / np.sum(weight)
 
     def air(self):
@@ -106,6 +137,9 @@ class Channel:
     def phase(self):
         head, old = rows_of(os.path.join(self.folder, "phase.csv"))
         middle = np.sqrt(self.low_um * self.high_um)
+        if self.response is not None:
+            w = np.linspace(self.low_um, self.high_um, 400)
+            middle = np.average(w, weights=np.interp(w, *self.response))
         known = sorted(PHASE_UM, key=PHASE_UM.get)
         x = [np.log(PHASE_UM[k]) for k in known]
         rows = []
@@ -267,9 +301,11 @@ def main():
     parser.add_argument("high_um", type=float)
     parser.add_argument("--kind", default="reflective", choices=["reflective", "emissive", "both"])
     parser.add_argument("--only", help="one visibility's folder, in metres")
+    parser.add_argument("--response", help="a CSV file of wavelength_um and response")
     parser.add_argument("--work", default=os.path.join(os.path.expanduser("~"), ".cache", "pitviper-lowtran"))
     a = parser.parse_args()
-    Channel(a.model, a.name, a.low_um, a.high_um, a.kind, a.work).make(a.only)
+    response = read_response(a.response, a.low_um, a.high_um) if a.response else None
+    Channel(a.model, a.name, a.low_um, a.high_um, a.kind, a.work, response).make(a.only)
 
 
 if __name__ == "__main__":

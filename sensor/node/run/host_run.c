@@ -166,26 +166,53 @@ static void report_air_temp(Choices *choices, const Config *config, const Atmosp
                    here_k - 273.15, high_k - 273.15, ground_m);
 }
 
-/* A model of one's own has the air of its tables, whatever the weather: said where that is far from what is set. */
-static void report_fixed_air(Choices *choices, const Config *config, const World *world)
+/* Of a model whose air follows the weather, the channels whose air does not: names, separated by commas. */
+static void list_fixed(char *out, size_t out_size, const Atmosphere *atmosphere)
+{
+    *out = 0;
+    for (int p = 0; p < SPECTRAL_PLACES; p++) {
+        const size_t length = strlen(out);
+        if (atmosphere_band_follows(atmosphere, (AirBand)p)) continue;
+        snprintf(out + length, out_size - length, "%s%s", length ? ", " : "", channel_in((ChannelPlace)p)->name);
+    }
+}
+
+/* A model or a channel of one's own has the air of its tables, whatever the weather: said where that is far from what
+ * is set, or from a weather file's at exercise time 0. */
+static void report_fixed_air(Choices *choices, const Config *config, const World *world, double unix_s)
 {
     const Atmosphere *atmosphere = world->atmosphere;
     Weather           weather = weather_default();
-    if (atmosphere_follows_weather(atmosphere)) return;
+    char              fixed[SPECTRAL_PLACES * (channel_name_size + 2)];
+    char              model[frame_model_size];
+    list_fixed(fixed, sizeof fixed, atmosphere);
+    if (!*fixed || frame_world_model(model, config) != STATUS_OK) return;
+    if (strcmp(model, config->weather.atmosphere) != 0)
+        choice_add(choices, "air: %s is that of %s nearest to the weather (weather.atmosphere)", model,
+                   config->weather.atmosphere);
     const double own_k = atmosphere_temp_k(atmosphere, 0), own_kg_m3 = atmosphere_vapour_kg_m3(atmosphere);
     weather.air_temp_k = isnan(config->weather.air_temp_k) ? own_k : config->weather.air_temp_k;
     weather.humidity = 0.01 * config->weather.humidity_pct;
+    if (strpbrk(config->weather.day, "/.")) weather = frame_weather_at(config, world, unix_s); /* not a day's course */
     const double set_kg_m3 = weather_vapour_kg_m3(&weather);
+    if (atmosphere_follows_weather(atmosphere)) {
+        if (fabs(weather.air_temp_k - own_k) > 5 || fabs(set_kg_m3 - own_kg_m3) > 0.2 * own_kg_m3)
+            choice_add(choices,
+                       "air: %s keeps the clear air of %s (%.0f C and %.1f g/m3 of water vapour at the ground), the "
+                       "weather has %.0f C and %.1f (etc/atmosphere/vapour.bin lacks this channel)",
+                       fixed, model, own_k - 273.15, 1e3 * own_kg_m3, weather.air_temp_k - 273.15, 1e3 * set_kg_m3);
+        return;
+    }
     if (fabs(weather.air_temp_k - own_k) > 5)
         choice_add(choices,
                    "air: %s is of %.0f C at the ground, the weather of %.0f C; transmittance stays that of its tables "
                    "(weather.air_temp_k; weather.atmosphere: us1976 follows the weather)",
-                   config->weather.atmosphere, own_k - 273.15, weather.air_temp_k - 273.15);
+                   model, own_k - 273.15, weather.air_temp_k - 273.15);
     if (fabs(set_kg_m3 - own_kg_m3) > 0.2 * own_kg_m3)
         choice_add(choices,
                    "air: %s has %.1f g/m3 of water vapour at the ground, the weather %.1f; transmittance stays that of "
                    "its tables (weather.humidity_pct; weather.atmosphere: us1976 follows the weather)",
-                   config->weather.atmosphere, 1e3 * own_kg_m3, 1e3 * set_kg_m3);
+                   model, 1e3 * own_kg_m3, 1e3 * set_kg_m3);
 }
 
 static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEntityId *host)
@@ -256,7 +283,7 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
         status = made_world(made, choices, &(MadeOf){&o->config, &run->tables, plan, &frame, out->unix_s, o->isa});
     if (status != STATUS_OK) return status;
     report_visibility(choices, &o->config, made->world.atmosphere);
-    report_fixed_air(choices, &o->config, &made->world);
+    report_fixed_air(choices, &o->config, &made->world, out->unix_s);
     report_air_temp(choices, &o->config, made->world.atmosphere,
                     elevation_height(&made->landscape.elevation, 0, 0, NULL));
     choice_rate(plan, choices, &o->config);

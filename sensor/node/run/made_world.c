@@ -316,9 +316,18 @@ static Status need_models(MadeWorld *m, const MadeOf *of)
 
 static Status need_air(MadeWorld *m, const MadeOf *of)
 {
-    char    key_text[sha256_text_size];
+    char    key_text[sha256_text_size], model[frame_model_size];
     Config *part = &m->part[MADE_AIR];
     Key     key = key_of(part, MADE_AIR, of->config);
+    /* of a set by weather the one model, so that weather alone makes no other air of one that is no set */
+    const Status named = frame_world_model(model, of->config);
+    if (named != STATUS_OK) return named;
+    if (snprintf(part->weather.atmosphere, sizeof part->weather.atmosphere, "%s", model) >=
+        (int)sizeof part->weather.atmosphere) {
+        log_error("atmosphere: path too long: model=%s", model);
+        return STATUS_BAD_VALUE;
+    }
+    add_text(&key, model);
     key.good = key.good && *m->key[MADE_MODELS];
     add_tables(&key, of->tables, of->config, true);
     if (is_there(key_text, m, MADE_AIR, &key)) return STATUS_OK;
