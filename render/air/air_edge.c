@@ -101,7 +101,7 @@ Status air_edge_meet(Air *air, const TableInput *in, Arena *arena)
         if (!out[b]) continue;
         double more_w_m2_sr[air_sky_azimuths + 1];
         for (int a = 0; a <= air_sky_azimuths; a++) {
-            const double light = b == AIR_LWIR ? 0 : seen[a][b] * air->light.scattered_scale;
+            const double light = b == AIR_LWIR ? 0 : seen[a][b] * air->light.scattered_scale[b];
             const double heat =
                 b < AIR_MWIR ? 0 : way.thermal_w_m2_sr[b - AIR_MWIR] * air->light.thermal_scale[b - AIR_MWIR];
             more_w_m2_sr[a] = (double)edge->table[b].added_w_m2_sr[a] - light - heat;
