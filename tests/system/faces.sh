@@ -1,7 +1,8 @@
 # What the comparisons of a box's faces with Mitsuba share; source it after common.sh.
 judges python3.mitsuba
 
-# faces INFRARED MODEL VISIBILITY_KM SUN_DEG LIFT_M GROUND PAINT: unlit faces, in $tmp/faces.txt, with contact shadows and by sampling
+# faces INFRARED MODEL VISIBILITY_KM SUN_DEG LIFT_M GROUND PAINT: unlit faces, in $tmp/faces.txt, with contact shadows and by
+# sampling
 faces() {
     local what="$*" line face channel theirs error contact sampled
     mkdir -p "$tmp/faces"

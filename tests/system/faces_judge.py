@@ -4,10 +4,11 @@
                                              all: lit faces and tops, too
 
 The sky is an environment map of 1024 x 513, the sun a directional light, depth unlimited. Each path begins on a face with a
-direction of that face's own reflection, here in NumPy: diffuse and a lobe of Beckmann slopes; what arrives from there is Mitsuba's,
-whose surfaces are diffuse. A line a face and channel:
+direction of that face's own reflection, here in NumPy: diffuse and a lobe of Beckmann slopes; what arrives from there is
+Mitsuba's, whose surfaces are diffuse. A line a face and channel:
     FACE CHANNEL COSINE_TO_SUN theirs RADIANCE error PERCENT contact PERCENT sampled PERCENT
-the error is Mitsuba's standard error, the others are of contact shadows (the default) and of light sampled over the hemisphere, over Mitsuba's.
+the error is Mitsuba's standard error, the others are of contact shadows (the default) and of light sampled over the hemisphere,
+over Mitsuba's.
 """
 import sys
 
@@ -38,7 +39,8 @@ def scene_of(text, channels, sky):
     return mi.load_dict({
         "type": "scene",
         "sun": {"type": "directional", "direction": [float(-x) for x in text["sun"]], "irradiance": rgb(c[1] for c in channels)},
-        "sky": {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(sky.transpose(1, 2, 0))), "to_world": T().rotate([1, 0, 0], 90)},
+        "sky": {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(sky.transpose(1, 2, 0))),
+                "to_world": T().rotate([1, 0, 0], 90)},
         "ground": {"type": "disk", "to_world": T().scale([20000, 20000, 1]), "bsdf": diffuse(3)},
         "box": {"type": "cube", "bsdf": diffuse(4),
                 "to_world": T().translate([0, 0, float(text["lift"][0]) + 0.75]).rotate([0, 0, 1], turn).scale([2, 1, 0.75])}})
@@ -50,7 +52,7 @@ def dielectric(index2, cosine):
 
 
 def fresnel(lobe_rho, roughness, cosine):
-    """Reflectance of the lobe at an angle, of a normal reflectance below 0.2: a dielectric, of which a share is bare below 0.02."""
+    """Reflectance of the lobe at an angle, of a normal one below 0.2: a dielectric, of which a share is bare below 0.02."""
     normal = max(lobe_rho, 0.02)
     index = (1 + np.sqrt(normal)) / (1 - np.sqrt(normal))
     return lobe_rho + min(lobe_rho / 0.02, 1) * (1 - min(roughness, 1))**2 * (dielectric(index**2, cosine) - normal)
@@ -76,13 +78,14 @@ def reflection(rho, gloss, slope, n, eye, d):
         lobe_rho = rho * gloss
         diffuse = (rho - lobe_rho) * (1 - fresnel(lobe_rho, slope, n_eye)) / (1 - lobe_rho) / np.pi
         n_half = np.maximum(half @ n, 1e-6)
-        lobe = fresnel(lobe_rho, slope, (eye * half).sum(1)) * slopes(slope, n_half) * smith(slope, n_eye) * smith(slope, np.maximum(n_d, 1e-6)) / (4 * n_eye)
+        seen = smith(slope, n_eye) * smith(slope, np.maximum(n_d, 1e-6))
+        lobe = fresnel(lobe_rho, slope, (eye * half).sum(1)) * slopes(slope, n_half) * seen / (4 * n_eye)
         return np.where(n_d > 0, diffuse * n_d + lobe, 0)
     return np.where(n_d > 0, diffuse * n_d, 0)
 
 
 def even(count, random):
-    """Points of the unit cube of four dimensions, evenly spread from a random start: multiples of powers of the root of x^5 = x + 1."""
+    """Points of a cube of four dimensions, evenly spread from a random start: multiples of powers of the root of x^5 = x + 1."""
     return (np.arange(1, count + 1)[:, None] / 1.1673039782614187**np.arange(1, 5) + random.random(4)) % 1
 
 
@@ -173,8 +176,9 @@ def main(folder, percent, whole):
                 mean, error = to_error(lambda: face_light(scene, of, text, n, p, eye, BATCH, random).mean(0), percent)
                 for i, k in enumerate(sorted(set(part))):
                     theirs = mean[i]
-                    print(f"{what} {channels[k][0]} {n @ text['sun']:+.2f} theirs {theirs:.5g} error {100 * error[i] / theirs:.2f} "
-                          f"contact {100 * (ours[k][at].mean() / theirs - 1):+.2f} sampled {100 * (sampled[k][at].mean() / theirs - 1):+.2f}")
+                    over = [100 * (made[k][at].mean() / theirs - 1) for made in (ours, sampled)]
+                    print(f"{what} {channels[k][0]} {n @ text['sun']:+.2f} theirs {theirs:.5g} "
+                          f"error {100 * error[i] / theirs:.2f} contact {over[0]:+.2f} sampled {over[1]:+.2f}")
 
 
 if __name__ == "__main__":
