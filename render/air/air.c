@@ -52,20 +52,21 @@ static void ask_task(void *user, int worker, int task)
     else daylight_ask(job->light, task - table);
 }
 
-static void draw_task(void *user, int worker, int task)
-{
-    AirJob   *job = user;
-    const int light = daylight_draws(job->light);
-    (void)worker;
-    if (task < light) daylight_draw(job->light, task);
-    else air_table_draw(job->table, task - light);
-}
-
-static void plane_task(void *user, int worker, int task)
+static void sky_task(void *user, int worker, int task)
 {
     AirJob *job = user;
     (void)worker;
-    daylight_plane(job->light, task);
+    daylight_draw(job->light, task);
+}
+
+/* What needs the sky's scale. */
+static void draw_task(void *user, int worker, int task)
+{
+    AirJob   *job = user;
+    const int planes = daylight_planes(job->light);
+    (void)worker;
+    if (task < planes) daylight_plane(job->light, task);
+    else air_table_draw(job->table, task - planes);
 }
 
 /* Direct sunlight at the eye. */
@@ -114,8 +115,8 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     status = air_table_begin(&job.table, out, &input, arena);
     if (status != STATUS_OK) return status;
     air_run(pool, air_table_asks(job.table) + daylight_asks(job.light), ask_task, &job);
-    air_run(pool, daylight_draws(job.light) + air_table_draws(job.table), draw_task, &job);
-    air_run(pool, daylight_planes(job.light), plane_task, &job);
+    air_run(pool, daylight_draws(job.light), sky_task, &job);
+    air_run(pool, daylight_planes(job.light) + air_table_draws(job.table), draw_task, &job);
     daylight_end(job.light);
     if (on_ground) memcpy(out->sky_eye, out->light.sky, sizeof out->sky_eye);
     for (int b = 0; b < AIR_BAND_COUNT && on_ground; b++) level_limb(&out->limb[b], &out->sky_eye[b]);
@@ -136,8 +137,7 @@ void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double
         light->sky_w_m2[b] = pi_rad * sky_w_m2_sr[b];
         if (b >= AIR_MWIR) light->ground_w_m2_sr[b] = sky_w_m2_sr[b];
         for (int i = 0; i <= air_sky_ups; i++)
-            light->sky[b].thermal_w_m2_sr[i] = light->sky_light[b].thermal_w_m2_sr[i] =
-                out->sky_eye[b].thermal_w_m2_sr[i] = (float)sky_w_m2_sr[b];
+            light->sky[b].thermal_w_m2_sr[i] = out->sky_eye[b].thermal_w_m2_sr[i] = (float)sky_w_m2_sr[b];
         level_limb(&out->limb[b], &out->sky_eye[b]);
         for (int i = 0; i <= air_plane_ups; i++)
             for (int a = 0; a <= air_plane_azimuths; a++) light->plane_w_m2[b][i][a] = (float)light->sky_w_m2[b];

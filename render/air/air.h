@@ -71,17 +71,17 @@ typedef struct Daylight {
     double             day_zenith_rad;   /* of the sun, at which the tables are evaluated */
     double             sun_above;        /* share of its disc above the horizon, over the square of its distance */
     double             thermal_scale[2]; /* air of another temperature than the model's */
-    double             scattered_scale[AIR_BAND_COUNT]; /* twilight, and the sun's distance */
+    double             scattered_scale[AIR_BAND_COUNT]; /* twilight, the sun's distance, sky_scale */
     Droplets           droplets;                        /* rain, snow, fog; the totals have them */
     double cloud_sky, cloud_thermal; /* clouds: factor on the sky's scattered light; share of the thermal sky that
                                       * is cloud of air temperature */
 
     /* by direction; only of the requested bands */
-    AirSky sky[AIR_BAND_COUNT];       /* from the ground: for mirror reflections in the scene */
-    AirSky sky_light[AIR_BAND_COUNT]; /* the same scaled: what lights the scene */
-    /* Radiance and irradiance of a sky in the tables come from two computations and differ slightly: the visible
-     * sky, also in a mirror, is the radiance; what lights a surface is that times this factor, so that its integral
-     * is the irradiance. */
+    AirSky sky[AIR_BAND_COUNT]; /* from the ground: what lights the scene, and is mirrored in it */
+    /* Irradiance and radiance of the scattered light in the tables come from two computations: one of discrete
+     * ordinates, and LOWTRAN's two streams, which are too dark under a low sun. All that is scattered, sky and paths
+     * from any eye, is the radiance times this factor, with which the sky's integral is its irradiance; 1 until the sky
+     * is summed. */
     double sky_scale[AIR_BAND_COUNT];
     float  plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* tilted plane, over its share */
     const struct AirDay *day;        /* what the tables were made from; in the arena. NULL: none */
@@ -163,10 +163,9 @@ static inline double daylight_plane_there(const Daylight *light, AirBand band, c
     return (double)(p->open * (l + p->up_share * (h - l)));
 }
 
-/* Sky radiance towards a unit direction, W/(m2 sr), as the ground sees it; below the horizon: the horizon's. */
+/* Sky radiance towards a unit direction, W/(m2 sr), as the ground sees it; below the horizon: the horizon's. Its
+ * integral is daylight_on_plane. */
 double daylight_sky(const Daylight *light, AirBand band, const double d_enu[3]);
-/* The same for lighting a surface: its integral is daylight_on_plane. */
-double daylight_sky_light(const Daylight *light, AirBand band, const double d_enu[3]);
 /* Irradiance of the sky on a plane of this unit normal, W/m2; half of it, and more, may be below the horizon. */
 double daylight_on_plane(const Daylight *light, AirBand band, const double n_enu[3]);
 

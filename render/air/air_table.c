@@ -208,6 +208,7 @@ void air_table_draw(TableJob *job, int task)
     if (group >= table->lights || lane >= table->light[group]->bands) return;
     AirLight     *light = table->light[group];
     const AirBand band = light->band[lane];
+    const double  more = log2(job->air->light.sky_scale[band]);
     /* every evaluated azimuth, on the coarse nodes; then as many between them */
     Coarse asked[coarse_turns + 1], turned[air_turns + 1];
     for (int a = 0; a <= job->turns; a++) {
@@ -228,7 +229,7 @@ void air_table_draw(TableJob *job, int task)
     for (int a = 0; a <= 2 * job->turns; a++) {
         double fine[air_slope_nodes];
         halve_both(fine, turned[a], coarse_slopes, coarse_shares);
-        for (int n = 0; n < air_slope_nodes; n++) light->log2_source[a][n][lane] = (float)fine[n];
+        for (int n = 0; n < air_slope_nodes; n++) light->log2_source[a][n][lane] = (float)(fine[n] + more);
     }
 }
 

@@ -62,13 +62,6 @@ double daylight_sky(const Daylight *light, AirBand band, const double d_enu[3])
     return daylight_sky_there(&light->sky[band], &place);
 }
 
-double daylight_sky_light(const Daylight *light, AirBand band, const double d_enu[3])
-{
-    SkyPlace place;
-    daylight_sky_place(&place, light, d_enu);
-    return daylight_sky_there(&light->sky_light[band], &place);
-}
-
 void daylight_plane_place(PlanePlace *out, const Daylight *light, const double n_enu[3])
 {
     const double up = clamp(n_enu[2], -1, 1), x = 0.5 * air_plane_ups * sqrt(1 - fabs(up));
@@ -360,12 +353,18 @@ static void fill_other(DaylightJob *job, int band)
     draw_rows(job->limb[band].thermal_w_m2_sr, job->limb[band].scattered_w_m2_sr, &asked, job->limbs);
 }
 
+/* What lies below the horizontal is over the same ring. */
+static void scale_sky(AirSky *sky, double scale)
+{
+    for (int k = 0; k < air_sky_angles + 2; k++) sky->around_sun[k] *= (float)scale;
+}
+
 /* One band: interpolated, and scaled to the total irradiance. */
 static void fill_sky(DaylightJob *job, int band)
 {
     Daylight *light = job->light;
     if (!(job->bands >> band & 1)) return;
-    AirSky             *sky = &light->sky[band], *sky_light = &light->sky_light[band];
+    AirSky             *sky = &light->sky[band];
     static const double up_enu[3] = {0, 0, 1};
     AskedSky            asked;
     fill_around_sun(sky, &job->answer[0], band);
@@ -376,11 +375,12 @@ static void fill_sky(DaylightJob *job, int band)
     memset(scattered.thermal_w_m2_sr, 0, sizeof scattered.thermal_w_m2_sr);
     light_lamps(job->w_m2[band], &job->lamp, &scattered);
     const double adds_up_to = on_plane(job->w_m2[band], &job->lamp, up_enu);
-    const double scale = adds_up_to > 0 ? job->diffuse_w_m2[band] / adds_up_to : 0;
-    *sky_light = *sky;
-    for (int k = 0; k < air_sky_angles + 2; k++) sky_light->around_sun[k] *= (float)scale;
-    light_lamps(job->w_m2[band], &job->lamp, sky_light);
+    const double scale = adds_up_to > 0 ? job->diffuse_w_m2[band] / adds_up_to : 1;
+    scale_sky(sky, scale);
+    if (job->other) scale_sky(&job->other[band], scale);
+    light_lamps(job->w_m2[band], &job->lamp, sky);
     light->sky_scale[band] = scale;
+    light->scattered_scale[band] *= scale;
 }
 
 /* Irradiance of planes of one tilt by the lights, in every band. */
@@ -457,6 +457,7 @@ Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *i
     DaylightJob *job = arena_alloc(arena, 1, sizeof *job);
     if (!job) return STATUS_NO_MEMORY;
     *light = (Daylight){0};
+    for (int b = 0; b < AIR_BAND_COUNT; b++) light->sky_scale[b] = 1;
     job->light = light, job->bands = in->bands, job->other = in->other, job->limb = in->limb;
     job->other_m = in->other_m;
     /* from low down there is less than two degrees of it */

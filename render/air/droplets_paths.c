@@ -101,7 +101,7 @@ static double drops_send(const Daylight *light, const DropletLayer *layer, int b
         const double to_sun = fmax(1 + g * g - 2 * g * cosine, 1e-6), phase = (1 - g * g) / (to_sun * sqrt(to_sun));
         const double above = layer->per_m[b] * (layer->top_m - layer->bottom_m) * (1 - share);
         const double sun = layer->sun_w_m2[b][1] > 0 ? layer->sun_w_m2[b][1] * exp(-above / light->droplets.sun_up) : 0;
-        sent = albedo *
+        sent = albedo * light->sky_scale[b] *
                (phase * sun / (4 * pi_rad) + fmax(between_sides(layer->diffuse[b], layer->fade[b], share, leans), 0));
     }
     if (!(lights & ask_thermal)) return sent;

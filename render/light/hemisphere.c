@@ -97,7 +97,7 @@ double hemisphere_met(double *rho, const Paths *p, int i, const HemisphereScene 
     *rho = 0;
     if (!(p->hits.range_m[i] < INFINITY)) {
         const double d_enu[3] = {p->rays.d_enu[0][i], p->rays.d_enu[1][i], p->rays.d_enu[2][i]};
-        return d_enu[2] < 0 ? ground : daylight_sky_light(&air->light, band, d_enu);
+        return d_enu[2] < 0 ? ground : daylight_sky(&air->light, band, d_enu);
     }
     const Material *m = &scene->materials->material[p->hits.material[i]];
     const double    n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};

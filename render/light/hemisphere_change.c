@@ -93,8 +93,7 @@ static void open_light(Open *out, const HemisphereScene *scene, unsigned bands)
         const SkyPlace edge = ring_edge(&at);
         const double   sr = 2 * pi_rad * ring_rad * sin(off_rad) / (offs * turns);
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            if (bands >> b & 1)
-                out->ring_w_m2[b] += ring_radiance(&air->light.sky_light[b], &at, &edge) * cos(off_rad) * sr;
+            if (bands >> b & 1) out->ring_w_m2[b] += ring_radiance(&air->light.sky[b], &at, &edge) * cos(off_rad) * sr;
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++) out->ring_shines |= out->ring_w_m2[b] != 0;
 }
@@ -225,7 +224,7 @@ static void follow_change(Change *sum, Paths *p, const ChangeJob *job, const Sky
                 const double shown = hemisphere_met(&rho, p, i, scene, (AirBand)b, ground, false) +
                                      rho * (daylight_plane_there(&scene->air->light, (AirBand)b, &plane) / pi_rad +
                                             ground * 0.5 * (1 - n_enu[2]) - ring * open->ring_w_m2[b]);
-                const double behind = d_enu[2] < 0 ? ground : daylight_sky_there(&scene->air->light.sky_light[b], &sky);
+                const double behind = d_enu[2] < 0 ? ground : daylight_sky_there(&scene->air->light.sky[b], &sky);
                 brought[b][p->of_path[i]] += p->share[b][i] * (shown - behind);
                 share[b] = 2 * p->share[b][i] * (float)rho;
             }
@@ -291,7 +290,7 @@ static int leave_to_ring(Paths *p, const Hits *hits, int from, const ChangeJob *
     const double   share = along * 2 * ring_rad * sin(off_rad) * job->samples / ring_directions;
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (job->bands >> b & 1)
-            p->share[b][at] = (float)(share * ring_radiance(&scene->air->light.sky_light[b], &place, &edge));
+            p->share[b][at] = (float)(share * ring_radiance(&scene->air->light.sky[b], &place, &edge));
     return at;
 }
 

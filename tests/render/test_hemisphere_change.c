@@ -269,7 +269,7 @@ static double ring_by_quadrature(void)
 
 static void set_ring(void)
 {
-    AirSky *sky = &stage.air.light.sky_light[AIR_R];
+    AirSky *sky = &stage.air.light.sky[AIR_R];
     for (int i = 0; i <= air_sky_ups; i++)
         for (int a = 0; a <= air_sky_azimuths; a++) sky->scattered_w_m2_sr[i][a] = 1;
     for (int k = 0; k < air_sky_angles + 2; k++) sky->around_sun[k] = k < 6 ? 5 * (6 - (float)k) : 0;

@@ -47,7 +47,7 @@ static int frame_of(SkyKept *kept, const Asked *of)
     SkyKeptFrame *frame = NULL;
     SkyNotes     *notes = NULL;
     set_air(of->sun_enu, 400, 20, 15);
-    AirSky *sky = &stage.air.light.sky_light[AIR_R]; /* with a ring about the sun, whose rays are never kept */
+    AirSky *sky = &stage.air.light.sky[AIR_R]; /* with a ring about the sun, whose rays are never kept */
     for (int i = 0; i <= air_sky_ups; i++)
         for (int a = 0; a <= air_sky_azimuths; a++) sky->scattered_w_m2_sr[i][a] = 1;
     for (int k = 0; k < 6; k++) sky->around_sun[k] = 5 * (6 - (float)k);

@@ -41,7 +41,7 @@ static void write_sky(const char *folder, const Daylight *light)
             for (int k = 0; k < sky_columns; k++) {
                 const double turn = 2 * pi_rad * (k + 0.5) / sky_columns,
                              d[3] = {sin(zenith_rad) * sin(turn), sin(zenith_rad) * cos(turn), cos(zenith_rad)};
-                row[k] = (float)daylight_sky_light(light, channel[c], d);
+                row[k] = (float)daylight_sky(light, channel[c], d);
             }
             fwrite(row, sizeof row, 1, file);
         }

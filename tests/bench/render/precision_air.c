@@ -91,6 +91,7 @@ static void ask_atmosphere(void *user)
         for (int b = 0; b < AIR_BAND_COUNT; b++)
             atmosphere_path(&s->path[b][i], s->air.light.atmosphere, s->air.light.weather.visibility_m, (AirBand)b,
                             &path, (double)s->temp_k[i]);
+        for (int b = 0; b < AIR_BAND_COUNT; b++) s->path[b][i].scattered_w_m2_sr *= s->air.light.scattered_scale[b];
     }
     bench_keep(s->path);
 }
@@ -259,7 +260,7 @@ static void ask_skies(void *user)
             const double along = (d[0] * sun[0] + d[1] * sun[1]) / (hypot(d[0], d[1]) * hypot(sun[0], sun[1]));
             atmosphere_sky(&sky, s->air.light.atmosphere, s->air.light.weather.visibility_m, AIR_G, 0, acos(d[2]),
                            zenith_rad, acos(clamp(along, -1, 1)));
-            s->out[i] = sky.scattered_w_m2_sr;
+            s->out[i] = sky.scattered_w_m2_sr * s->air.light.scattered_scale[AIR_G];
         } else {
             s->out[i] = daylight_sky(&s->air.light, AIR_G, d);
         }
@@ -329,7 +330,7 @@ static void ask_planes(void *user)
             for (int a = 0; a < 4 * s->steps; a++) {
                 const double rise = (h + 0.5) / s->steps * 0.5 * pi_rad, turn = (a + 0.5) * pi_rad / (2 * s->steps);
                 const double d[3] = {cos(rise) * sin(turn), cos(rise) * cos(turn), sin(rise)}, cosine = v3_dot(d, n);
-                if (cosine > 0) sum += daylight_sky_light(&s->air.light, AIR_G, d) * cos(rise) * cosine;
+                if (cosine > 0) sum += daylight_sky(&s->air.light, AIR_G, d) * cos(rise) * cosine;
             }
         s->out[i] = sum * 0.5 * pi_rad / s->steps * 0.5 * pi_rad / s->steps;
     }
