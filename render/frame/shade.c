@@ -368,11 +368,11 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
         block.below[b] = below_of(shader, scene, (AirBand)b);
     }
     keep_normals(shader, &s->hits);
+    for (int b = 0; b < AIR_BAND_COUNT && shader->terms; b++) block.mirror_sky_found[b] = shader->terms->mirror_sky[b];
     surface_light_shade(out, &scene->surface_light, &block);
     for (int b = 0; b < AIR_BAND_COUNT && shader->terms; b++) {
-        MirrorLight shown;
-        if (out[b] && light_in_mirrors(&shown, shader->terms->mirror_sky[b], shader, scene, s, (AirBand)b))
-            block.mirror_sky[b] = shown.sky;
+        block.mirror_sky_found[b] = NULL;
+        if (out[b]) block.mirror_sky[b] = shader->terms->mirror_sky[b];
     }
     if (shader->terms) shade_terms_light(shader->terms, scene, s, &block);
     restore_normals(shader, &s->hits);

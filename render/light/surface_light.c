@@ -335,6 +335,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
             mirror_sky = mirrored_sky(open - factor * level_w_m2, plane[band], air->light.sky_w_m2[band]);
             if (far.any && !b->open[band]) mirror_sky = f32x8_select(far.leaf, one(), mirror_sky);
             if (b->mirror_sky[band]) mirror_sky = f32x8_load(b->mirror_sky[band] + i);
+            if (b->mirror_sky_found[band]) f32x8_store(b->mirror_sky_found[band] + i, mirror_sky);
             mirror_level = factor * level;
         }
         if (b->open[band]) around = around * f32x8_load(b->open[band] + i);

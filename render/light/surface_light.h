@@ -42,6 +42,7 @@ typedef struct SurfaceBlock {
     /* factors in a mirror on level ground's radiance (hemisphere_below; NULL: 1) and on the sky's (mirror_sky_factor;
      * NULL: what around_w_m2 with below, or open, leaves for it). Without open and below: 1 */
     const float       *below[AIR_BAND_COUNT], *mirror_sky[AIR_BAND_COUNT];
+    float             *mirror_sky_found[AIR_BAND_COUNT]; /* where the latter is left, of glossy hits; NULL: nowhere */
     const CanopyLight *canopy; /* of the optical bands, without around_w_m2; NULL: no plants near */
     const AirPaths    *veils;  /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
