@@ -107,6 +107,9 @@ static double gas_adds(Passed *p, Segment *s, int which)
     return adds;
 }
 
+/* What lets less pass is opaque. */
+static const double through_least = 1e-7;
+
 /* Composites the segments behind those already passed. */
 static void compose(Passed *passed, const Crossing *crossing, int count, unsigned bands)
 {
@@ -143,16 +146,15 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
             depth[b] += depth_here;
             shown[b] += depth_here * (gas.shown[which] / gas_atm_m);
         }
-        bool goes_on = false;
+        bool goes_on = false; /* a band ends by itself, whichever others there are */
         for (int b = 0; b < smoke_bands; b++) {
-            if (!(bands >> b & 1) || !(depth[b] > 0)) {
-                goes_on = goes_on || bands >> b & 1;
-                continue;
+            if (!(bands >> b & 1) || !(through[b] > through_least)) continue;
+            if (depth[b] > 0) {
+                const double taken = absorbed(depth[b]);
+                added[b] += through[b] * taken * (shown[b] / depth[b]);
+                through[b] *= 1 - taken;
             }
-            const double taken = absorbed(depth[b]);
-            added[b] += through[b] * taken * (shown[b] / depth[b]);
-            through[b] *= 1 - taken;
-            goes_on = goes_on || through[b] > 1e-7;
+            goes_on = goes_on || through[b] > through_least;
         }
         if (!goes_on) {
             passed->goes_on = false;
