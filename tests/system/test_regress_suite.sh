@@ -17,7 +17,7 @@ for folder in tests/regress/*/; do
 done
 
 check "some cases" [ ${#cases[@]} -ge 7 ]
-check "all records together are small" [ "$(cat tests/regress/*/record/* | wc -c)" -le 1700000 ]
+check "all records together are small" [ "$(cat tests/regress/*/record/* | wc -c)" -le 1800000 ]
 run regress "${cases[@]}" --threads 1 --junit "$tmp/junit.xml" --report "$tmp/report.html"
 cat "$tmp/stdout"
 check "exit code" [ $code = 0 ]
