@@ -331,5 +331,8 @@ void recall_ground(Worker *w, const Job *job)
     }
     landscape_surfaces(hits->surface, job->scene.world->landscape, hits->count, hits->p_enu[0], hits->p_enu[1]);
     for (int i = 0; i < hits->count; i++)
+        if (visibility_is_beyond(job->scene.visibility, hits->p_enu[0][i], hits->p_enu[1][i]))
+            hits->surface[i] = p->cover[pixel_index(job, block->x[i], block->y[i])];
+    for (int i = 0; i < hits->count; i++)
         hits->material[i] = (uint16_t)(hits->surface[i] ? job->scene.world->materials.surface[hits->surface[i]] : 0);
 }

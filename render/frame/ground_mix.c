@@ -218,8 +218,9 @@ void split_ground(Worker *w, const Job *job, int side, int most)
     for (int i = 0; i < before; i++) {
         GroundPatch patch[ground_mix_most];
         const int   pixel = i / samples;
-        const bool  ground = s->hits.surface[i] && !s->hits.entity[i] && s->hits.range_m[i] < INFINITY;
-        double      centre_px[2];
+        const bool  ground = s->hits.surface[i] && !s->hits.entity[i] && s->hits.range_m[i] < INFINITY &&
+                            !visibility_is_beyond(job->scene.visibility, s->hits.p_enu[0][i], s->hits.p_enu[1][i]);
+        double centre_px[2];
         sample_place(centre_px, block->n, i % samples);
         centre_px[0] += block->x[pixel], centre_px[1] += block->y[pixel];
         const int patches = ground ? find_patches(patch, w, job, i, centre_px, offset_px, side, most) : 0;

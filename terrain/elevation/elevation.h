@@ -28,7 +28,7 @@
  *     normal of the triangle entered. Compare the ray's z with the surface at the entry; do not require a proper
  *     crossing of a triangle.
  *
- * Beyond the outermost level there is nothing: such rays see the sky. */
+ * Beyond the outermost level there is nothing. */
 #ifndef TERRAIN_ELEVATION_ELEVATION_H
 #define TERRAIN_ELEVATION_ELEVATION_H
 

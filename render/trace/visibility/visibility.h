@@ -93,6 +93,10 @@ double visibility_bend(const Visibility *v);
 double visibility_lift_at(const Visibility *v, const double p_enu[3]);
 double visibility_lift(const Visibility *v, int index);
 
+/* Whether a place lies outside of the terrain, where the round Earth goes on: its hits have a surface there, which the
+ * landscape does not know. */
+bool visibility_is_beyond(const Visibility *v, double x_m, double y_m);
+
 /* Entities of the snapshot, and their poses, each computed on first use (by any thread); its model is -1 where it
  * cannot be drawn (render/trace/parts/parts.h). */
 struct PosedEntity;

@@ -163,6 +163,7 @@ Status visibility_create_seen(Visibility **out, const VisibilityConfig *config, 
     v->poser->arena = arena;
     Status status = visibility_add(v, &trace_ground, NULL); /* the list of what rays can meet, in its order */
     if (status == STATUS_OK) status = visibility_add(v, &trace_parts, NULL);
+    if (status == STATUS_OK) status = visibility_round_earth(v, arena);
     if (status == STATUS_OK) status = bound_entities(v, arena);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < v->count; k++) {

@@ -42,6 +42,7 @@ struct Visibility {
     const Snapshot               *snapshot;
     Ground                        ground, seen; /* seen: of bent rays */
     double                        eye_enu[3];
+    const struct RoundEarth      *round;       /* NULL: the eye does not look beyond the terrain */
     const double                 *lift_m;      /* [count]: of entities for bent rays; NULL: 0 */
     bool                          full_plants; /* none is simplified */
     unsigned                      skips_off;
@@ -79,6 +80,11 @@ void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const
                       const double *limit_m, const double centre[3], double radius_m);
 
 extern const TraceEntry trace_ground, trace_parts; /* self: NULL */
+
+/* visibility_beyond.c: the Earth beyond the terrain's outline, where the eye may look there. */
+typedef struct RoundEarth RoundEarth;
+extern const TraceEntry   trace_beyond; /* self: RoundEarth */
+Status                    visibility_round_earth(Visibility *v, Arena *arena);
 
 /* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of block->among had
  * been tested one after the other. order: as of order_rays. */
