@@ -22,6 +22,7 @@ typedef struct SmallFile {
     "0,0,100,0.02,0.02,0.02,1\n0,0,1000,0.2,0.2,0.2,9\n0,9000,9000,1,1,1,20\n9000,0,9000,1,1,1,20\n"                   \
     "9000,9000,100,0.01,0.01,0.01,1\n"
 #define SOLAR "visibility_m,water_mm,ground_m,sun_zenith_deg,direct_w_m2,diffuse_w_m2\n"
+#define LIMB  "visibility_m,observer_m,place,mwir,lwir\n"
 #define SIX   "b,g,r,nir,mwir,lwir\n"
 
 static const SmallFile small_files[] = {
@@ -53,6 +54,7 @@ static const SmallFile small_files[] = {
     {"m/10000/scattered.csv", "observer_m,zenith_deg,range_m,sun_zenith_deg,rel_azimuth_deg," SIX
                               "0,0,100,0,0,1,1,1,1,0.1,0\n0,0,100,0,180,1,1,1,1,0.1,0\n0,0,900,0,0,2,2,2,2,0.2,0\n"
                               "0,0,900,0,180,2,2,2,2,0.2,0\n0,180,50,0,0,1,1,1,1,0,0\n0,180,50,0,180,1,1,1,1,0,0\n"},
+    {"m/limb.csv", LIMB "10000,0,0,1,1\n10000,0,2,1,1\n10000,9000,0,1.1,1\n10000,9000,2,0.9,1\n"},
 };
 enum { small_count = sizeof small_files / sizeof *small_files };
 
@@ -167,6 +169,9 @@ static void refuses_and_says_where(void **state)
          "0,0,100,0,0,1,1,1,1,0.1,0\n0,0,100,0,180,1,1,1,1,0.1,0\n0,0,900,0,0,2,2,2,2,0.2,0\n",
          "scattered.csv:4"},
         {"m/10000/sky_thermal.csv", "observer_m,zenith_deg,mwir,lwir\n0,0,0.4\n", "sky_thermal.csv:2"},
+        {"m/limb.csv", LIMB "10000,0,0,1,1\n10000,0,2,1,1\n10000,9000,2,1,1\n", "limb.csv:4: a point is missing"},
+        {"m/limb.csv", LIMB "10000,0,2.5,1,1\n", "limb.csv:2: column place"},
+        {"m/limb.csv", LIMB "10000,0,0,0,1\n", "limb.csv:2: column mwir"},
     };
     log_set_sink(listen_first, NULL);
     Atmosphere *model = NULL;
