@@ -319,9 +319,8 @@ static inline void judge_tables(Tally *tally, const ErrorCase *c)
             air_path(&veils, air, b, &hits, &rays, thermal ? temp_k : NULL);
             const double *s = air->light.sun_d_enu, level = hypot(d[0], d[1]), range_m = (double)veils.range_m[0];
             const double  azimuth = acos(clamp((d[0] * s[0] + d[1] * s[1]) / (level * hypot(s[0], s[1])), -1, 1));
-            const double  sun_zenith = 0.5 * pi_rad - frame.sun.elevation_rad,
-                         au2 = 1 / (frame.sun.distance_au * frame.sun.distance_au);
-            double seen = (double)value[i];
+            const double  sun_zenith = 0.5 * pi_rad - frame.sun.elevation_rad, lit = air->light.scattered_scale[b];
+            double        seen = (double)value[i];
             sum += seen;
             if (range_m < INFINITY) {
                 const double  climb = d[2] + (view->p_enu[0] * d[0] + view->p_enu[1] * d[1]) / 6371e3;
@@ -336,14 +335,14 @@ static inline void judge_tables(Tally *tally, const ErrorCase *c)
                 atmosphere_path(&want, air->light.atmosphere, air->light.weather.visibility_m, b, &path,
                                 thermal && p->temp_k[i] > 0 ? (double)p->temp_k[i] : 288);
                 const double tau = thermal ? want.transmittance : want.sun_transmittance;
-                const double added = want.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr * au2);
+                const double added = want.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr * lit);
                 seen =
                     (seen - (double)veils.added_w_m2_sr[0]) / fmax((double)veils.transmittance[0], 1e-6) * tau + added;
             } else {
                 SkyAir sky;
                 atmosphere_sky(&sky, air->light.atmosphere, air->light.weather.visibility_m, b, air->eye_height_m,
                                acos(fmax(d[2], 0)), sun_zenith, azimuth);
-                seen = sky.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * au2);
+                seen = sky.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * lit);
             }
             square += (seen - (double)value[i]) * (seen - (double)value[i]);
         }
