@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
-# The unlit sides of a painted box over grass and over concrete against Mitsuba 3: the same sky by direction, sun, ground and
-# paint. More suns, airs and grounds: test_faces_judge_deep.sh.
+# The unlit sides of a painted box over grass against Mitsuba 3: the same sky by direction, sun, ground and paint. More suns, airs and
+# grounds: test_faces_judge_deep.sh.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/faces.sh"
 
 faces nir us1976 23 45 0.4 grass_green glossy
-faces swir midlat_summer 5 30 0 concrete glossy
 
 # its twin: the ground a third brighter
 awk '$1 == "channel" { $8 *= 1.33 } { print }' "$tmp/faces/scene.txt" >"$tmp/scene.txt"
