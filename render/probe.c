@@ -139,7 +139,7 @@ static void atmosphere_probe_close(void *state)
     free(probe);
 }
 
-static const char *find_model(Atmosphere **out, AtmosphereProbe *probe, const char *name,
+static const char *find_model(const Atmosphere **out, AtmosphereProbe *probe, const char *name,
                               const SpectralChannel *further)
 {
     int i = 0;
@@ -155,45 +155,48 @@ static const char *find_model(Atmosphere **out, AtmosphereProbe *probe, const ch
     return *out ? NULL : "no such model, or its tables are invalid (see the log)";
 }
 
+typedef struct RowAir {
+    const Atmosphere *model;
+    AirBand           band;
+    double            visibility_m;
+} RowAir;
+
 /* The model's air under the weather of a row; without one the model's own. */
-static const char *under_weather(const Atmosphere **out, AtmosphereProbe *probe, const Atmosphere *model,
-                                 const ProbeValue *air_temp_k, const ProbeValue *humidity_pct, double visibility_m)
+static const char *under_weather(const Atmosphere **out, AtmosphereProbe *probe, const RowAir *row,
+                                 const ProbeValue *air_temp_k, const ProbeValue *humidity_pct)
 {
     Weather weather = weather_default();
-    *out = model;
+    *out = row->model;
     if (!isfinite(air_temp_k->number) && !isfinite(humidity_pct->number)) return NULL;
     if (!isfinite(humidity_pct->number)) return "air_temp_k needs humidity_pct beside it";
-    weather.air_temp_k = isfinite(air_temp_k->number) ? air_temp_k->number : atmosphere_temp_k(model, 0);
+    weather.air_temp_k = isfinite(air_temp_k->number) ? air_temp_k->number : atmosphere_temp_k(row->model, 0);
     weather.humidity = 0.01 * humidity_pct->number;
     if (!(weather.air_temp_k >= 220 && weather.air_temp_k <= 330)) return "air_temp_k must be 220 .. 330";
     if (!(weather.humidity >= 0 && weather.humidity <= 1)) return "humidity_pct must be 0 .. 100";
-    const AirState state = {visibility_m, weather.air_temp_k, weather_vapour_kg_m3(&weather)};
+    const AirState state = {row->visibility_m, weather.air_temp_k, weather_vapour_kg_m3(&weather)};
     arena_reset(probe->arena);
-    return atmosphere_in(out, model, &state, ~0u, probe->arena) == STATUS_OK ? NULL : "out of memory";
+    return atmosphere_in(out, row->model, &state, ~0u, probe->arena) == STATUS_OK ? NULL : "out of memory";
 }
 
 /* Model, visibility_km and band, which begin a row. A further channel has its place until the next row. */
-static const char *air_of_row(Atmosphere **model, double *visibility_m, AirBand *band, AtmosphereProbe *probe,
-                              const ProbeValue *in)
+static const char *air_of_row(RowAir *out, AtmosphereProbe *probe, const ProbeValue *in)
 {
     const SpectralChannel *channel = channel_named(in[2].text, strlen(in[2].text));
     if (!channel) return "band must be b, g, r, pan, nir, mwir, lwir or a further channel of etc/channels.csv";
     channels_standard();
     if (!channel->standard) channel_choose(channel);
-    *band = channel->place;
-    *visibility_m = in[1].number * 1e3;
-    const char *why = find_model(model, probe, in[0].text, channel->standard ? NULL : channel);
+    out->band = channel->place;
+    out->visibility_m = in[1].number * 1e3;
+    const char *why = find_model(&out->model, probe, in[0].text, channel->standard ? NULL : channel);
     if (why) return why;
-    return *visibility_m > 0 ? NULL : "visibility_km must be above 0";
+    return out->visibility_m > 0 ? NULL : "visibility_km must be above 0";
 }
 
 static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
-    Atmosphere       *model;
+    RowAir            row;
     const Atmosphere *here;
-    AirBand           band;
-    double            visibility_m;
-    const char       *why = air_of_row(&model, &visibility_m, &band, state, in);
+    const char       *why = air_of_row(&row, state, in);
     if (why) return why;
     const double  temp_k = in[6].number;
     const bool    sun = isfinite(in[7].number);
@@ -204,10 +207,10 @@ static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue 
     if (!(path.range_m > 0 && path.range_m >= 0.9999 * fabs(path.observer_m - path.target_m)))
         return "range_km must be above 0 and at least the difference of the heights";
     if (!(temp_k > 0)) return "temp_k must be above 0";
-    why = under_weather(&here, state, model, &in[9], &in[10], visibility_m);
+    why = under_weather(&here, state, &row, &in[9], &in[10]);
     if (why) return why;
     PathAir air;
-    atmosphere_path(&air, here, visibility_m, band, &path, temp_k);
+    atmosphere_path(&air, here, row.visibility_m, row.band, &path, temp_k);
     out[0].number = air.transmittance;
     out[1].number = air.thermal_w_m2_sr;
     out[2].number = air.sun_transmittance;
@@ -217,21 +220,19 @@ static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue 
 
 static const char *sky_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
-    Atmosphere       *model;
+    RowAir            row;
     const Atmosphere *here;
-    AirBand           band;
-    double            visibility_m;
-    const char       *why = air_of_row(&model, &visibility_m, &band, state, in);
+    const char       *why = air_of_row(&row, state, in);
     if (why) return why;
     const double observer_m = in[3].number, zenith_rad = in[4].number * rad_per_deg;
     const bool   sun = isfinite(in[5].number);
     if (!(observer_m >= 0)) return "heights must be at or above the ground";
     if (!(in[4].number >= 0 && in[4].number <= 180)) return "zenith_deg must be 0 .. 180";
-    why = under_weather(&here, state, model, &in[7], &in[8], visibility_m);
+    why = under_weather(&here, state, &row, &in[7], &in[8]);
     if (why) return why;
     SkyAir sky;
-    atmosphere_sky(&sky, here, visibility_m, band, observer_m, zenith_rad, sun ? in[5].number * rad_per_deg : pi_rad,
-                   isfinite(in[6].number) ? in[6].number * rad_per_deg : 0);
+    atmosphere_sky(&sky, here, row.visibility_m, row.band, observer_m, zenith_rad,
+                   sun ? in[5].number * rad_per_deg : pi_rad, isfinite(in[6].number) ? in[6].number * rad_per_deg : 0);
     out[0].number = sky.thermal_w_m2_sr;
     if (sun) out[1].number = sky.scattered_w_m2_sr;
     return NULL;
@@ -239,18 +240,16 @@ static const char *sky_row(void *state, const ProbeValue *in, ProbeValue *out)
 
 static const char *sunlight_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
-    Atmosphere       *model;
+    RowAir            row;
     const Atmosphere *here;
-    AirBand           band;
-    double            visibility_m;
-    const char       *why = air_of_row(&model, &visibility_m, &band, state, in);
+    const char       *why = air_of_row(&row, state, in);
     if (why) return why;
     if (!(in[3].number >= 0)) return "heights must be at or above the ground";
     if (!(in[4].number >= 0 && in[4].number <= 90)) return "sun_zenith_deg must be 0 .. 90";
-    why = under_weather(&here, state, model, &in[5], &in[6], visibility_m);
+    why = under_weather(&here, state, &row, &in[5], &in[6]);
     if (why) return why;
     SunAir sun;
-    atmosphere_sun(&sun, here, visibility_m, band, in[3].number, in[4].number * rad_per_deg);
+    atmosphere_sun(&sun, here, row.visibility_m, row.band, in[3].number, in[4].number * rad_per_deg);
     out[0].number = sun.direct_normal_w_m2;
     out[1].number = sun.diffuse_horizontal_w_m2;
     return NULL;

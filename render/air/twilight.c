@@ -1,5 +1,6 @@
 /* render/air/twilight.c: skylight with the sun below 5 degrees, by band, over that with the sun there. */
 #include "render/air/air_private.h"
+#include "render/air/atmosphere_private.h"
 
 /* Decades of a clear sky's light on level ground, lx, without a moon: Janiczek & DeYoung, Computer Programs for Sun and
  * Moon Illuminance, USNO Circular 171 (1987), after Brown, Natural Illumination Charts (1952); in Vallado, Fundamentals
@@ -38,20 +39,11 @@ static const double colour_decades[depressions][colours] = {
     {-0.344, 0, 0.167, 0.625, 0.625},
 };
 
-/* Index of the interval of rising nodes that holds x, and where in it, 0 .. 1. */
-static int interval(double *share, const double *node, int nodes, double x)
-{
-    int i = 0;
-    while (i < nodes - 2 && x >= node[i + 1]) i++;
-    *share = clamp((x - node[i]) / (node[i + 1] - node[i]), 0, 1);
-    return i;
-}
-
 static double colour_at(double depression, double um)
 {
     double    down, along;
-    const int i = interval(&down, depression_deg, depressions, depression);
-    const int k = interval(&along, colour_um, colours, um);
+    const int i = interval_of(&down, depression_deg, depressions, depression);
+    const int k = interval_of(&along, colour_um, colours, um);
     double    value[2];
     for (int j = 0; j < 2; j++)
         value[j] = colour_decades[i + j][k] + along * (colour_decades[i + j][k + 1] - colour_decades[i + j][k]);

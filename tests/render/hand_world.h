@@ -191,4 +191,31 @@ static inline double hand_irradiance(const Picture *p, const View *view, int pla
     return sum;
 }
 
+/* The hand's world as an eye over its origin sees it; bent: through air. */
+static inline const Visibility *hand_see(double eye_m, bool bent, unsigned skips_off)
+{
+    Visibility      *v;
+    VisibilityConfig config = {.tracer = hand.world.tracer,
+                               .ground = &hand.landscape,
+                               .frame = &hand.world.frame,
+                               .snapshot = &hand.snapshot,
+                               .skips_off = skips_off,
+                               .eye_enu = {0, 0, eye_m}};
+    if (bent) config.bend_per_m = world_bend(&hand.world, REFRACTION_OPTICAL, config.eye_enu);
+    assert_int_equal(visibility_create_seen(&v, &config, hand.arena), STATUS_OK);
+    return v;
+}
+
+/* One ray of that eye. */
+static inline const Hits *hand_look(const Visibility *v, double eye_m, const double d_enu[3], bool bent)
+{
+    static Rays        rays;
+    static Hits        hits;
+    VisibilityCounters unused = {0};
+    rays.count = 1, rays.bent = bent, rays.far_m[0] = INFINITY;
+    for (int k = 0; k < 3; k++) rays.o_enu[k][0] = k == 2 ? eye_m : 0, rays.d_enu[k][0] = d_enu[k];
+    visibility_first_hit(&hits, v, &rays, visibility_all_but(-1), &unused);
+    return &hits;
+}
+
 #endif

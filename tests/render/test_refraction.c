@@ -35,32 +35,14 @@ static double find_dip_rad(const Visibility *v, bool bent)
 {
     double low = 0, high = 0.02;
     for (int n = 0; n < 40; n++) {
-        static Rays        rays;
-        static Hits        hits;
-        VisibilityCounters unused = {0};
-        const double       middle = 0.5 * (low + high), d[3] = {0, cos(middle), -sin(middle)};
-        rays.count = 1, rays.bent = bent, rays.far_m[0] = INFINITY;
-        for (int k = 0; k < 3; k++) rays.o_enu[k][0] = k == 2 ? eye_m : 0, rays.d_enu[k][0] = d[k];
-        visibility_first_hit(&hits, v, &rays, visibility_all_but(-1), &unused);
-        if (hits.kind[0] == hit_ground) high = middle;
+        const double middle = 0.5 * (low + high), d_enu[3] = {0, cos(middle), -sin(middle)};
+        if (hand_look(v, eye_m, d_enu, bent)->kind[0] == hit_ground) high = middle;
         else low = middle;
     }
     return low;
 }
 
-static const Visibility *see(bool bent, unsigned skips_off)
-{
-    Visibility      *v;
-    VisibilityConfig config = {.tracer = hand.world.tracer,
-                               .ground = &hand.landscape,
-                               .frame = &hand.world.frame,
-                               .snapshot = &hand.snapshot,
-                               .skips_off = skips_off,
-                               .eye_enu = {0, 0, eye_m}};
-    if (bent) config.bend_per_m = world_bend(&hand.world, REFRACTION_OPTICAL, config.eye_enu);
-    assert_int_equal(visibility_create_seen(&v, &config, hand.arena), STATUS_OK);
-    return v;
-}
+static const Visibility *see(bool bent, unsigned skips_off) { return hand_see(eye_m, bent, skips_off); }
 
 /* The Nautical Almanac's dip is 1.76' sqrt(100 m) = 17.6' (k 1.198); of k 1.149 it is 17.97', without air 19.26'. */
 static void the_horizon_dips(void **state)

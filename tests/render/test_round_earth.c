@@ -29,30 +29,13 @@ static int open_ocean(void **state)
                : -1;
 }
 
-static const Visibility *see(double eye_m, bool bent)
-{
-    Visibility      *v;
-    VisibilityConfig config = {.tracer = hand.world.tracer,
-                               .ground = &hand.landscape,
-                               .frame = &hand.world.frame,
-                               .snapshot = &hand.snapshot,
-                               .eye_enu = {0, 0, eye_m}};
-    if (bent) config.bend_per_m = world_bend(&hand.world, REFRACTION_OPTICAL, config.eye_enu);
-    assert_int_equal(visibility_create_seen(&v, &config, hand.arena), STATUS_OK);
-    return v;
-}
+static const Visibility *see(double eye_m, bool bent) { return hand_see(eye_m, bent, 0); }
 
 /* Traces one ray to the north-east of east_rad from north, dip_rad below the horizontal. */
 static const Hits *look(const Visibility *v, double eye_m, double east_rad, double dip_rad, bool bent)
 {
-    static Rays        rays;
-    static Hits        hits;
-    VisibilityCounters unused = {0};
-    const double       d[3] = {cos(dip_rad) * sin(east_rad), cos(dip_rad) * cos(east_rad), -sin(dip_rad)};
-    rays.count = 1, rays.bent = bent, rays.far_m[0] = INFINITY;
-    for (int k = 0; k < 3; k++) rays.o_enu[k][0] = k == 2 ? eye_m : 0, rays.d_enu[k][0] = d[k];
-    visibility_first_hit(&hits, v, &rays, visibility_all_but(-1), &unused);
-    return &hits;
+    const double d_enu[3] = {cos(dip_rad) * sin(east_rad), cos(dip_rad) * cos(east_rad), -sin(dip_rad)};
+    return hand_look(v, eye_m, d_enu, bent);
 }
 
 /* The dip of a sphere is acos(R / (R + h)): 10.05 degrees from 99 km, as the Earth's radius is 6357 to 6385 km there

@@ -2,14 +2,8 @@
  * LOWTRAN7's own atmospheres, longwave formulas, rain, the sun that heats, the sky below the horizontal. */
 #include "tests/bench/suites.h"
 
-#include "render/air/air.h"
 #include "tests/bench/bench.h"
-
-typedef struct Setup {
-    Atmosphere  *atmosphere;
-    PlanckTable *planck[2];
-    Arena       *arena;
-} Setup;
+#include "tests/bench/render/air_bench.h"
 
 /* Air at the ground of LOWTRAN7's atmospheres, vapour in ppmv at a pressure; in haze of 23 km the transmittance of
  * level paths of 2, 5 and 10 km: of sunlight in 0.7-1.1 um, of 300 K in 3.4-4.8 and 8-12 um. */
@@ -36,7 +30,7 @@ static const struct {
      {{0.755445, 0.539045, 0.319148}, {0.486794, 0.346891, 0.228148}, {0.79742, 0.625655, 0.434387}}},
 };
 
-static double worst_tau(Setup *s, AirBand band)
+static double worst_tau(AirBench *s, AirBand band)
 {
     static const double range_m[] = {2000, 5000, 10000};
     double              worst = 0;
@@ -58,7 +52,7 @@ static double worst_tau(Setup *s, AirBand band)
 }
 
 /* Prata, Q. J. R. Meteorol. Soc. 122 (1996): emissivity 1 - (1 + w) exp(-sqrt(1.2 + 3 w)), w = 46.5 e / T, e in hPa. */
-static double worst_longwave(Setup *s)
+static double worst_longwave(AirBench *s)
 {
     static const double state[][2] = {{308, 0.15}, {308, 0.5}, {308, 0.85}, {293, 0.3}, {293, 0.8}, {278, 0.7}};
     double              worst = 0;
@@ -78,7 +72,7 @@ static double worst_longwave(Setup *s)
 }
 
 /* ITU-R P.1814: 1.076 R^0.67 dB/km in every band. */
-static double worst_rain(Setup *s)
+static double worst_rain(AirBench *s)
 {
     static const double rate_mm_h[] = {0.5, 2, 20, 100};
     double              worst = 0;
@@ -97,7 +91,7 @@ static double worst_rain(Setup *s)
 
 /* Direct light facing the sun by Bird (pvlib 0.16.1), 15 mm of water, at sea level, from 25 degrees up; optical depths
  * of LOWTRAN7's haze (tests/render/test_solar.c). */
-static double worst_sun(Setup *s)
+static double worst_sun(AirBench *s)
 {
     static const double row[][3] = {{50e3, 90, 896.7}, {50e3, 60, 862.4}, {50e3, 40, 783.3}, {50e3, 25, 654.8},
                                     {23e3, 90, 793.5}, {23e3, 60, 750.2}, {23e3, 40, 652.6}, {23e3, 25, 501.5}};
@@ -115,8 +109,8 @@ Status bench_precision_weather(Bench *bench)
 {
     static const char *const lowtran_is =
         "LOWTRAN7's six atmospheres, 2-10 km, by temperature and vapour at the ground";
-    Setup  s = {.arena = arena_create()};
-    Status status = s.arena ? atmosphere_open(&s.atmosphere, "us1976") : STATUS_NO_MEMORY;
+    AirBench     s;
+    const Status status = air_bench_open(&s);
     if (status == STATUS_OK) {
         bench_progress(bench, "weather");
         bench_stress(bench, "weather: transmittance, 0.7-1.1 um", worst_tau(&s, AIR_NIR), 0.004, "", lowtran_is);
@@ -131,7 +125,6 @@ Status bench_precision_weather(Bench *bench)
     } else {
         log_error("bench: precision: weather: %s", status_name(status));
     }
-    atmosphere_close(s.atmosphere);
-    arena_destroy(s.arena);
+    air_bench_close(&s);
     return status;
 }

@@ -2,8 +2,8 @@
  * what the weather's own air is of it. */
 #include "tests/bench/suites.h"
 
-#include "render/air/air.h"
 #include "tests/bench/bench.h"
+#include "tests/bench/render/air_bench.h"
 
 enum { settings = 5, all_bands = (1 << AIR_BAND_COUNT) - 1 };
 
@@ -72,20 +72,13 @@ Status bench_speed_air(Bench *bench)
                            {"air: the same from 10 km", 10000, 0, false},
                            {"air: the same from 99 km", 99000, 0, false},
                            {"air: of which clear air by the weather", 2, 0, true}};
-    Atmosphere  *atmosphere = NULL;
-    PlanckTable *planck[2] = {NULL};
-    Arena       *arena = arena_create();
-    Making       making[settings];
-    BenchWork    work[settings];
-    BenchTime    time[settings];
-    Status       status = arena ? atmosphere_open(&atmosphere, "us1976") : STATUS_NO_MEMORY;
-    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        double low_m, high_m;
-        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
-        status = planck_table_create(&planck[k], low_m, high_m);
-    }
+    AirBench  air;
+    Making    making[settings];
+    BenchWork work[settings];
+    BenchTime time[settings];
+    Status    status = air_bench_open(&air);
     for (int k = 0; k < settings && status == STATUS_OK; k++) {
-        making[k] = (Making){.source = {atmosphere, planck[0], planck[1], 0, 0},
+        making[k] = (Making){.source = {air.atmosphere, air.planck[0], air.planck[1], 0, 0},
                              .weather = weather_default(),
                              .sun = {.azimuth_rad = 2.1,
                                      .elevation_rad = 0.7,
@@ -93,7 +86,7 @@ Status bench_speed_air(Bench *bench)
                                      .d_enu = {cos(0.7) * sin(2.1), cos(0.7) * cos(2.1), sin(0.7)}},
                              .eye_m = setting[k].eye_m,
                              .weather_only = setting[k].weather_only,
-                             .arena = arena};
+                             .arena = air.arena};
         making[k].weather.rain_mm_h = setting[k].rain_mm_h;
         work[k] = (BenchWork){make, &making[k], 1};
     }
@@ -112,8 +105,6 @@ Status bench_speed_air(Bench *bench)
         else bench_add(bench, &row);
     }
     if (status != STATUS_OK) log_error("bench: speed: air: %s", status_name(status));
-    for (int k = 0; k < 2; k++) planck_table_destroy(planck[k]);
-    atmosphere_close(atmosphere);
-    arena_destroy(arena);
+    air_bench_close(&air);
     return status;
 }

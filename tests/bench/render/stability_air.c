@@ -3,28 +3,26 @@
  * fog. */
 #include "tests/bench/suites.h"
 #include "tests/bench/stress.h"
-#include "render/air/air.h"
+#include "tests/bench/render/air_bench.h"
 
 enum { all_bands = (1 << AIR_BAND_COUNT) - 1, rays_each = 64 };
 
 typedef struct Any {
-    Atmosphere  *atmosphere;
-    PlanckTable *planck[2];
-    Arena       *arena;
-    Status       status;
-    Hits         hits;
-    Rays         rays;
-    AirPaths     out[AIR_BAND_COUNT];
+    AirBench of;
+    Status   status;
+    Hits     hits;
+    Rays     rays;
+    AirPaths out[AIR_BAND_COUNT];
 } Any;
 
 static void look(Any *a, const Weather *weather, double sun_rad, double eye_m)
 {
     static Air      air;
-    const AirSource source = {a->atmosphere, a->planck[0], a->planck[1], 0, 0};
+    const AirSource source = {a->of.atmosphere, a->of.planck[0], a->of.planck[1], 0, 0};
     const AirEye    eye = {.height_m = eye_m, .bands = all_bands};
     const Sun       sun = {.elevation_rad = sun_rad, .distance_au = 1, .d_enu = {0, cos(sun_rad), sin(sun_rad)}};
-    arena_reset(a->arena);
-    a->status = air_at(&air, &source, weather, &sun, &eye, NULL, a->arena);
+    arena_reset(a->of.arena);
+    a->status = air_at(&air, &source, weather, &sun, &eye, NULL, a->of.arena);
     if (a->status == STATUS_OK) air_paths_of(a->out, &air, all_bands, &a->hits, &a->rays, NULL);
 }
 
@@ -118,17 +116,9 @@ Status bench_stability_air(Bench *bench)
          "transmittance 0 .. 1, radiance finite and not below 0"},
         {"air: across the horizontal, 1 and 20 km, fog's limits, first rain", no_steps, 0.5, "%", "no jump"},
     };
-    static Any any;
-    any = (Any){.arena = arena_create()};
-    Status status = any.arena ? atmosphere_open(&any.atmosphere, "us1976") : STATUS_NO_MEMORY;
-    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        double low_m, high_m;
-        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
-        status = planck_table_create(&any.planck[k], low_m, high_m);
-    }
+    static Any   any;
+    const Status status = air_bench_open(&any.of);
     if (status == STATUS_OK) stress_cases(bench, cases, sizeof cases / sizeof *cases, &any);
-    for (int k = 0; k < 2; k++) planck_table_destroy(any.planck[k]);
-    atmosphere_close(any.atmosphere);
-    arena_destroy(any.arena);
+    air_bench_close(&any.of);
     return status;
 }
