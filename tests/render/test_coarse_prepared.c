@@ -34,6 +34,8 @@ static void prepared_is_there(void **state)
     CHECK(signatures_waiting(s) > 0);
     for (int tries = 0; tries < 3000 && signatures_waiting(s) > 0; tries++) {
         CHECK(signatures_prepare(s, model, 0) == STATUS_OK); /* takes in what was made, and plans nothing twice */
+        const uint64_t made = signatures_counters(s).made;
+        CHECK(made + (uint64_t)signatures_waiting(s) <= (uint64_t)bins); /* the one being made counts once */
         nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
     }
     CHECK(signatures_waiting(s) == 0 && signatures_counters(s).made == (uint64_t)bins);

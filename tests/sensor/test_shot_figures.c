@@ -305,7 +305,7 @@ static void coarse_ones_are_prepared(void **state)
     CHECK(seeker_radar_prepare(radar, stage.catalog, &stage.snapshot) == STATUS_OK);
     const RadarPrepared p = seeker_radar_prepared(radar);
     printf("%d bins: %d made, %d wait\n", bins, p.made, p.waiting);
-    CHECK(p.made + p.waiting <= bins && p.waiting > bins / 2); /* one may be on its way */
+    CHECK(p.made + p.waiting <= bins && p.waiting > bins / 2); /* more may be made between the two */
     stage.snapshot.count = 0;
 }
 

@@ -231,15 +231,17 @@ static bool take_next(Background *b, const Signatures *s)
     return joint != NULL;
 }
 
+static bool same_planned(const Background *b, const Planned *p, int bin, const Kept *one)
+{
+    return p->model == one->model && p->damage == one->damage && same_antenna(&b->bin[bin], &one->middle.tx);
+}
+
 /* Crosses out what is made, or given up, of what is planned. */
 static void cross_out(Background *b, const Kept *one)
 {
     for (int i = 0; i < b->planned; i++)
-        for (int bin = 0; bin < b->bins; bin++) {
-            Planned *p = &b->plan[i];
-            if (p->model == one->model && p->damage == one->damage && same_antenna(&b->bin[bin], &one->middle.tx))
-                p->made[bin] = true;
-        }
+        for (int bin = 0; bin < b->bins; bin++)
+            if (same_planned(b, &b->plan[i], bin, one)) b->plan[i].made[bin] = true;
 }
 
 static void *run_background(void *user)
@@ -461,9 +463,14 @@ int signatures_waiting(const Signatures *s)
     Background *b = (Background *)(uintptr_t)&s->background;
     if (!b->runs) return 0;
     pthread_mutex_lock(&b->lock);
-    int waiting = b->waiting + (b->busy.joint != NULL);
+    int  waiting = b->waiting;
+    bool busy = b->busy.joint != NULL; /* with one that no plan counts */
     for (int i = 0; i < b->planned; i++)
-        for (int bin = 0; bin < b->bins; bin++) waiting += !b->plan[i].made[bin];
+        for (int bin = 0; bin < b->bins; bin++) {
+            waiting += !b->plan[i].made[bin];
+            if (busy && !b->plan[i].made[bin]) busy = !same_planned(b, &b->plan[i], bin, &b->busy);
+        }
+    waiting += busy;
     pthread_mutex_unlock(&b->lock);
     return waiting;
 }
