@@ -85,10 +85,12 @@ static void sun_at_eye(Air *air, const Atmosphere *atmosphere, const Sun *sun, u
 /* The horizontal's radiance all the way down. */
 static void level_limb(AirLimb *out, const AirSky *sky)
 {
-    out->steps = 1;
-    for (int i = 0; i <= out->steps; i++) {
-        out->thermal_w_m2_sr[i] = sky->thermal_w_m2_sr[0];
-        memcpy(out->scattered_w_m2_sr[i], sky->scattered_w_m2_sr[0], sizeof out->scattered_w_m2_sr[i]);
+    for (int stack = 0; stack < air_limb_stacks; stack++) {
+        out->steps[stack] = 1;
+        for (int i = 0; i <= 1; i++) {
+            out->thermal_w_m2_sr[stack][i] = sky->thermal_w_m2_sr[0];
+            memcpy(out->scattered_w_m2_sr[stack][i], sky->scattered_w_m2_sr[0], sizeof out->scattered_w_m2_sr[stack][i]);
+        }
     }
 }
 

@@ -60,10 +60,10 @@ static void shift_rows(AirLimb *limb, const AirSky *sky, const double more_w_m2_
     for (int a = 0; a <= air_sky_azimuths; a++) {
         const float *ring = &sky->around_sun[place[a].angle];
         const double around = (double)(ring[0] + place[a].angle_share * (ring[1] - ring[0]));
-        for (int i = 3 * limb->steps / 4; i <= limb->steps; i++) {
-            const double now =
-                (double)limb->scattered_w_m2_sr[i][a] + share_at(i, limb->steps) * more_w_m2_sr[a] / around;
-            limb->scattered_w_m2_sr[i][a] = (float)fmax(now, -(double)limb->thermal_w_m2_sr[i] / around);
+        for (int i = 3 * limb->steps[0] / 4; i <= limb->steps[0]; i++) {
+            float       *row = limb->scattered_w_m2_sr[0][i];
+            const double now = (double)row[a] + share_at(i, limb->steps[0]) * more_w_m2_sr[a] / around;
+            row[a] = (float)fmax(now, -(double)limb->thermal_w_m2_sr[0][i] / around);
         }
     }
 }

@@ -327,20 +327,6 @@ static void path_homogeneous(AirPaths *out, const Air *air, AirBand band, const 
     }
 }
 
-/* Below the horizontal, above the Earth's edge. */
-static double limb_there(const Air *air, int b, const SkyPlace *p, double climb)
-{
-    const int    steps = air->limb[b].steps;
-    const double share = fmax(1 - climb * climb / air_edge2(air->eye_height_m), 0), u = (1 - sqrt(share)) * steps;
-    const int    i = u < steps ? (int)u : steps - 1;
-    const float  t = (float)(u - i), *ring = &air->sky_eye[b].around_sun[p->angle];
-    const float *low = &air->limb[b].scattered_w_m2_sr[i][p->azimuth], *high = low + air_sky_azimuths + 1;
-    const float *thermal = &air->limb[b].thermal_w_m2_sr[i];
-    const float l = low[0] + p->azimuth_share * (low[1] - low[0]), h = high[0] + p->azimuth_share * (high[1] - high[0]);
-    return (double)(thermal[0] + t * (thermal[1] - thermal[0]) +
-                    (l + t * (h - l)) * (ring[0] + p->angle_share * (ring[1] - ring[0])));
-}
-
 /* What the air above the tables' top adds to paths that end below it. */
 static void add_above(AirPaths *out, const Air *air, int thermal, const Hits *hits, const Rays *rays)
 {
@@ -379,11 +365,12 @@ void air_paths_clear(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const 
         const double climb = air_climb(o_enu, d_enu);
         SkyPlace     place;
         air_sky_place(&place, air->light.sun_d_enu, d_enu, climb);
+        const LimbPlace limb = climb < 0 ? air_limb_place(air->eye_height_m, climb) : (LimbPlace){0};
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!out[b]) continue;
             out[b]->transmittance[i] = out[b]->sun_transmittance[i] = out[b]->air_transmittance[i] = 0;
             out[b]->added_w_m2_sr[i] =
-                (float)(climb < 0 ? limb_there(air, b, &place, climb) : daylight_sky_there(&air->sky_eye[b], &place));
+                (float)(climb < 0 ? air_limb_there(air, b, &limb, &place) : daylight_sky_there(&air->sky_eye[b], &place));
         }
     }
 }

@@ -159,6 +159,31 @@ static inline double air_climb(const double o_enu[3], const double d_enu[3])
     return d_enu[2] + (o_enu[0] * d_enu[0] + o_enu[1] * d_enu[1]) / earth_radius_m;
 }
 
+/* ---- below the horizontal: air_limb.c -------------------------------------------------------- */
+
+/* Evaluated rows of a stack, and azimuths, of the sky below an eye's horizontal, without the ring about the sun. */
+enum { air_limb_asks = air_limb_steps / 2, air_sky_asked_azimuths = air_sky_azimuths / 2 };
+typedef struct AskedLimb {
+    double scattered_w_m2_sr[air_limb_asks + 1][air_sky_asked_azimuths + 1], thermal_w_m2_sr[air_limb_asks + 1];
+} AskedLimb;
+
+/* A ray in the rows. level: share of the sky's lowest row, for rays above all rows. */
+typedef struct LimbPlace {
+    int    stack;
+    double share, level; /* share: of its steps */
+} LimbPlace;
+
+/* Evaluated steps of a stack from this height. */
+int air_limb_rows(double eye_m, int stack);
+/* Rate of climb of a ray at this share of a stack's steps. */
+double    air_limb_climb(double eye_m, int stack, double share);
+LimbPlace air_limb_place(double eye_m, double climb);
+/* Fills in a stack from its evaluated rows, steps + 1. */
+void   air_limb_draw(AirLimb *out, int stack, const AskedLimb *asked, int steps);
+double air_limb_there(const Air *air, int band, const LimbPlace *limb, const SkyPlace *place);
+/* All azimuths of a row from the evaluated ones. */
+void air_sky_azimuth_row(double out[air_sky_azimuths + 1], const double in[air_sky_asked_azimuths + 1]);
+
 /* Square of the sine of the angle by which the Earth's edge is below the horizontal. */
 static inline double air_edge2(double eye_m)
 {

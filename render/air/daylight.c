@@ -186,18 +186,16 @@ static double on_plane(const float w_m2[lamps], const Lamps *lamp, const double 
 enum {
     sky_stride = 2,
     asked_ups = air_sky_ups / sky_stride,
-    asked_azimuths = air_sky_azimuths / sky_stride,
-    asked_limbs = air_limb_steps / sky_stride,
-    asked_rows = asked_limbs > asked_ups ? asked_limbs : asked_ups
+    asked_rows = air_limb_asks > asked_ups ? air_limb_asks : asked_ups
 };
 
 typedef struct AskedSky {
-    double scattered_w_m2_sr[asked_rows + 1][asked_azimuths + 1], thermal_w_m2_sr[asked_rows + 1];
+    double scattered_w_m2_sr[asked_ups + 1][air_sky_asked_azimuths + 1], thermal_w_m2_sr[asked_ups + 1];
 } AskedSky;
 
 /* Evaluations of the day for all bands at once: by height, or depth below the horizontal, and azimuth. */
 typedef struct SkyRows {
-    double scattered[asked_rows + 1][asked_azimuths + 1][AIR_BAND_COUNT], thermal[asked_rows + 1][2];
+    double scattered[asked_rows + 1][air_sky_asked_azimuths + 1][AIR_BAND_COUNT], thermal[asked_rows + 1][2];
 } SkyRows;
 /* And by angle from the sun. */
 typedef struct SkyAnswers {
@@ -209,57 +207,68 @@ struct DaylightJob {
     Daylight     *light;
     AirSky       *other; /* [AIR_BAND_COUNT], the sky from other_m up; NULL: of the ground alone */
     AirLimb      *limb;  /* and below */
-    int           limbs; /* rows of it that are evaluated, less one */
+    int           limbs[air_limb_stacks]; /* rows of it that are evaluated, less one */
     double        other_m;
     const AirDay *day;
     unsigned      bands;
     double        diffuse_w_m2[AIR_BAND_COUNT];
-    double        azimuth_rad[asked_azimuths + 1];
+    double        azimuth_rad[air_sky_asked_azimuths + 1];
     SkyAnswers    answer[2]; /* from the ground, from other_m */
-    SkyRows       below;     /* of limb */
+    SkyRows       below[air_limb_stacks]; /* of limb */
     Lamps         lamp;
     float         w_m2[AIR_BAND_COUNT][lamps];
 };
 
+static double ring_rad(int k) { return pi_rad * k * k / (air_sky_angles * air_sky_angles); }
+
 static double height_of(const DaylightJob *job, int other) { return other ? job->other_m : 0; }
 
-/* Sky radiance by angle from the sun: from it up over the zenith and down to the horizon behind, and constant
- * beyond. */
-static void ask_around_sun(DaylightJob *job, int other, int k)
+/* Sky radiance of the ground by angle from the sun: from it up over the zenith and down to the horizon behind, and
+ * constant beyond. */
+static void ask_around_sun(DaylightJob *job, int k)
 {
-    const double angle_rad = pi_rad * k * k / (air_sky_angles * air_sky_angles);
-    const double zenith_rad = fmax(job->light->day_zenith_rad - angle_rad, -0.5 * pi_rad),
+    const double zenith_rad = fmax(job->light->day_zenith_rad - ring_rad(k), -0.5 * pi_rad),
                  azimuth_rad = zenith_rad < 0 ? pi_rad : 0;
     double thermal[2];
-    air_day_sky(&job->answer[other].around[k], thermal, job->day, height_of(job, other), fabs(zenith_rad), &azimuth_rad,
+    air_day_sky(&job->answer[0].around[k], thermal, job->day, 0, fabs(zenith_rad), &azimuth_rad, 1);
+    droplets_in_sky(&job->answer[0].around[k], thermal, job->light, job->bands, fabs(zenith_rad), &azimuth_rad, 1);
+}
+
+/* The same from the other height, whose sky grows by tens from the zenith to the horizontal: at the sun's own height as
+ * far as that goes, beyond it past the zenith to farthest_rad from there, and constant: air of nearly one length. */
+static void ask_around_other(DaylightJob *job, int k)
+{
+    static const double farthest_rad = 35 * 3.14159265358979323846 / 180;
+    const double        sun_rad = job->light->day_zenith_rad, half = sin(0.5 * ring_rad(k));
+    const bool          level = half < sin(sun_rad);
+    const double        behind_rad = fmin(ring_rad(k) - sun_rad, fmax(farthest_rad, sun_rad));
+    const double        azimuth_rad = level ? 2 * asin(half / sin(sun_rad)) : pi_rad;
+    double              thermal[2];
+    air_day_sky(&job->answer[1].around[k], thermal, job->day, job->other_m, level ? sun_rad : behind_rad, &azimuth_rad,
                 1);
-    if (!other)
-        droplets_in_sky(&job->answer[0].around[k], thermal, job->light, job->bands, fabs(zenith_rad), &azimuth_rad, 1);
 }
 
 /* One height of the sky. */
 static void ask_sky(DaylightJob *job, int other, int i)
 {
     const double u = (double)i / asked_ups;
-    const int    azimuths = i == asked_ups ? 1 : asked_azimuths + 1; /* the zenith has none */
+    const int    azimuths = i == asked_ups ? 1 : air_sky_asked_azimuths + 1; /* the zenith has none */
     SkyRows     *sky = &job->answer[other].sky;
     air_day_sky(sky->scattered[i], sky->thermal[i], job->day, height_of(job, other), acos(u * u), job->azimuth_rad,
                 azimuths);
     if (!other)
         droplets_in_sky(sky->scattered[i], sky->thermal[i], job->light, job->bands, acos(u * u), job->azimuth_rad,
                         azimuths);
-    for (int a = azimuths; a <= asked_azimuths; a++)
+    for (int a = azimuths; a <= air_sky_asked_azimuths; a++)
         memcpy(sky->scattered[i][a], sky->scattered[i][0], sizeof sky->scattered[i][a]);
 }
 
-/* Rate of climb of a ray of a row below the horizontal. */
-static double limb_climb(double eye_m, double u) { return -sqrt(air_edge2(eye_m) * u * (2 - u)); }
-
-static void ask_limb(DaylightJob *job, int i)
+static void ask_limb(DaylightJob *job, int stack, int i)
 {
-    const double climb = limb_climb(job->other_m, (double)i / job->limbs);
-    air_day_sky(job->below.scattered[i], job->below.thermal[i], job->day, job->other_m, acos(climb), job->azimuth_rad,
-                asked_azimuths + 1);
+    const double climb = air_limb_climb(job->other_m, stack, (double)i / job->limbs[stack]);
+    SkyRows     *below = &job->below[stack];
+    air_day_sky(below->scattered[i], below->thermal[i], job->day, job->other_m, acos(climb), job->azimuth_rad,
+                air_sky_asked_azimuths + 1);
 }
 
 static void fill_around_sun(AirSky *sky, const SkyAnswers *answer, int b)
@@ -289,54 +298,51 @@ static double under_clouds(const Daylight *light, int b, double clear_w_m2_sr)
     return clear + light->cloud_thermal * (cloud - clear);
 }
 
-/* A row, of which this is the sine of its height. */
-static void ask_row(AskedSky *asked, const DaylightJob *job, const AirSky *sky, const SkyRows *rows, int b, int i,
-                    double up)
+/* A row, of which this is the sine of its height; returns its thermal radiance. */
+static double ask_row(double scattered_w_m2_sr[air_sky_asked_azimuths + 1], const DaylightJob *job, const AirSky *sky,
+                      const SkyRows *rows, int b, int i, double up)
 {
     const double flat = sqrt(1 - up * up);
-    for (int a = 0; a <= asked_azimuths; a++) {
+    for (int a = 0; a <= air_sky_asked_azimuths; a++) {
         const double azimuth_rad = job->azimuth_rad[up < 1 ? a : 0],
                      d[3] = {flat * cos(azimuth_rad), flat * sin(azimuth_rad), up};
-        asked->scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0 : without_ring(job, sky, b, rows->scattered[i][a][b], d);
+        scattered_w_m2_sr[a] = b == AIR_LWIR ? 0 : without_ring(job, sky, b, rows->scattered[i][a][b], d);
     }
-    asked->thermal_w_m2_sr[i] = b < AIR_MWIR ? 0 : under_clouds(job->light, b, rows->thermal[i][b - AIR_MWIR]);
+    return b < AIR_MWIR ? 0 : under_clouds(job->light, b, rows->thermal[i][b - AIR_MWIR]);
 }
 
 static void asked_above(AskedSky *asked, const DaylightJob *job, const AirSky *sky, const SkyRows *rows, int b)
 {
     for (int i = 0; i <= asked_ups; i++) {
         const double u = (double)i / asked_ups;
-        ask_row(asked, job, sky, rows, b, i, u * u);
+        asked->thermal_w_m2_sr[i] = ask_row(asked->scattered_w_m2_sr[i], job, sky, rows, b, i, u * u);
     }
 }
 
-/* In full resolution; mirrored at both ends of azimuth, as the sky is. Rows: [2 steps + 1]. */
-static void draw_rows(float *thermal, float (*scattered)[air_sky_azimuths + 1], const AskedSky *asked, int steps)
+/* In full resolution; mirrored at both ends of azimuth, as the sky is. */
+void air_sky_azimuth_row(double out[air_sky_azimuths + 1], const double in[air_sky_asked_azimuths + 1])
 {
-    double along[asked_rows + 1][air_sky_azimuths + 1];
-    for (int i = 0; i <= steps; i++)
-        for (int a = 0; a <= air_sky_azimuths; a++) {
-            const double *v = asked->scattered_w_m2_sr[i];
-            const int     low = a / sky_stride < asked_azimuths ? a / sky_stride : asked_azimuths - 1;
-            const int below = low > 0 ? low - 1 : 1, above = low + 2 <= asked_azimuths ? low + 2 : asked_azimuths - 1;
-            along[i][a] =
-                cubic_between(v[below], v[low], v[low + 1], v[above], (double)(a - low * sky_stride) / sky_stride);
-        }
-    const double *v = asked->thermal_w_m2_sr;
-    for (int i = 0; i <= sky_stride * steps; i++) {
-        const int    low = i / sky_stride < steps ? i / sky_stride : steps - 1;
-        const int    below = low > 0 ? low - 1 : 0, above = low + 2 <= steps ? low + 2 : steps;
-        const double t = (double)(i - low * sky_stride) / sky_stride;
-        for (int a = 0; a <= air_sky_azimuths; a++)
-            scattered[i][a] =
-                (float)fmax(cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
-        thermal[i] = (float)fmax(cubic_between(v[below], v[low], v[low + 1], v[above], t), 0);
+    for (int a = 0; a <= air_sky_azimuths; a++) {
+        const int low = a / sky_stride < air_sky_asked_azimuths ? a / sky_stride : air_sky_asked_azimuths - 1;
+        const int below = low > 0 ? low - 1 : 1, above = low + 2 <= air_sky_asked_azimuths ? low + 2 : air_sky_asked_azimuths - 1;
+        out[a] = cubic_between(in[below], in[low], in[low + 1], in[above], (double)(a - low * sky_stride) / sky_stride);
     }
 }
 
 static void draw_sky(AirSky *sky, const AskedSky *asked)
 {
-    draw_rows(sky->thermal_w_m2_sr, sky->scattered_w_m2_sr, asked, asked_ups);
+    double along[asked_ups + 1][air_sky_azimuths + 1];
+    for (int i = 0; i <= asked_ups; i++) air_sky_azimuth_row(along[i], asked->scattered_w_m2_sr[i]);
+    const double *v = asked->thermal_w_m2_sr;
+    for (int i = 0; i <= air_sky_ups; i++) {
+        const int    low = i / sky_stride < asked_ups ? i / sky_stride : asked_ups - 1;
+        const int    below = low > 0 ? low - 1 : 0, above = low + 2 <= asked_ups ? low + 2 : asked_ups;
+        const double t = (double)(i - low * sky_stride) / sky_stride;
+        for (int a = 0; a <= air_sky_azimuths; a++)
+            sky->scattered_w_m2_sr[i][a] =
+                (float)fmax(cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
+        sky->thermal_w_m2_sr[i] = (float)fmax(cubic_between(v[below], v[low], v[low + 1], v[above], t), 0);
+    }
 }
 
 /* The sky from the other height: from its horizontal up, and down. */
@@ -347,10 +353,15 @@ static void fill_other(DaylightJob *job, int band)
     fill_around_sun(sky, &job->answer[1], band);
     asked_above(&asked, job, sky, &job->answer[1].sky, band);
     draw_sky(sky, &asked);
-    for (int i = 0; i <= job->limbs; i++)
-        ask_row(&asked, job, sky, &job->below, band, i, limb_climb(job->other_m, (double)i / job->limbs));
-    job->limb[band].steps = sky_stride * job->limbs;
-    draw_rows(job->limb[band].thermal_w_m2_sr, job->limb[band].scattered_w_m2_sr, &asked, job->limbs);
+    for (int stack = 0; stack < air_limb_stacks; stack++) {
+        const int steps = job->limbs[stack];
+        AskedLimb limb;
+        for (int i = 0; i <= steps && steps > 0; i++) {
+            const double climb = air_limb_climb(job->other_m, stack, (double)i / steps);
+            limb.thermal_w_m2_sr[i] = ask_row(limb.scattered_w_m2_sr[i], job, sky, &job->below[stack], band, i, climb);
+        }
+        air_limb_draw(&job->limb[band], stack, &limb, steps);
+    }
 }
 
 /* What lies below the horizontal is over the same ring. */
@@ -410,7 +421,10 @@ enum {
     lamp_tasks = lamp_ups + lamp_rings
 };
 
-static int asks_of_limb(const DaylightJob *job) { return job->other ? job->limbs + 1 : 0; }
+static int asks_of_limb(const DaylightJob *job)
+{
+    return job->other ? job->limbs[0] + 1 + (job->limbs[1] > 0 ? job->limbs[1] + 1 : 0) : 0;
+}
 
 int daylight_asks(const DaylightJob *job)
 {
@@ -420,7 +434,8 @@ int daylight_asks(const DaylightJob *job)
 void daylight_ask(DaylightJob *job, int task)
 {
     if (task < asks_of_limb(job)) {
-        ask_limb(job, task);
+        const bool upper = task > job->limbs[0];
+        ask_limb(job, upper, upper ? task - job->limbs[0] - 1 : task);
         return;
     }
     task -= asks_of_limb(job);
@@ -428,7 +443,8 @@ void daylight_ask(DaylightJob *job, int task)
         const int other = task % 2, k = task / 2;
         if (other && !job->other) return;
         if (k <= asked_ups) ask_sky(job, other, k);
-        else ask_around_sun(job, other, k - (asked_ups + 1));
+        else if (other) ask_around_other(job, k - (asked_ups + 1));
+        else ask_around_sun(job, k - (asked_ups + 1));
         return;
     }
     task -= asks_of_sky + asks_around_sun;
@@ -460,13 +476,12 @@ Status daylight_begin(DaylightJob **out, Daylight *light, const DaylightInput *i
     for (int b = 0; b < AIR_BAND_COUNT; b++) light->sky_scale[b] = 1;
     job->light = light, job->bands = in->bands, job->other = in->other, job->limb = in->limb;
     job->other_m = in->other_m;
-    /* from low down there is less than two degrees of it */
-    job->limbs = in->other_m < 3000 ? asked_limbs / 3 : asked_limbs;
+    for (int stack = 0; stack < air_limb_stacks; stack++) job->limbs[stack] = air_limb_rows(in->other_m, stack);
     AirSource source = *in->source;
     Status    status = daylight_air(&source.atmosphere, in->source->atmosphere, in->weather, in->bands, arena);
     if (status != STATUS_OK) return status;
     daylight_sums(light, &source, in->weather, in->sun, in->bands, job->diffuse_w_m2);
-    for (int a = 0; a <= asked_azimuths; a++) job->azimuth_rad[a] = a * pi_rad / asked_azimuths;
+    for (int a = 0; a <= air_sky_asked_azimuths; a++) job->azimuth_rad[a] = a * pi_rad / air_sky_asked_azimuths;
     double temp_k[air_temps + 1];
     memcpy(temp_k, emitter_temp_k, sizeof emitter_temp_k);
     temp_k[air_temps] = light->weather.air_temp_k;
