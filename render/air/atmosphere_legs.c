@@ -40,12 +40,11 @@ int air_leg_pieces(AirPath piece[air_pieces_max], const AirPath *leg)
     const Ray ray = ray_between(leg->observer_m, leg->target_m, leg->range_m);
     const int count = (int)fmin(ceil(leg->range_m / longest_piece_m), air_pieces_max);
     for (int i = 0; i < count; i++) {
+        const double from_m = i * longest_piece_m, to_m = i + 1 < count ? from_m + longest_piece_m : leg->range_m;
         piece[i] = *leg;
-        piece[i].range_m = leg->range_m / count;
         if (i > 0) piece[i].observer_m = piece[i - 1].target_m;
-        if (i + 1 < count)
-            piece[i].target_m = fmax(air_height_along(ray.height_m, ray.up, (i + 1) * piece[i].range_m, NULL), 0);
-        piece[i].range_m = fmax(piece[i].range_m, fabs(piece[i].target_m - piece[i].observer_m));
+        if (i + 1 < count) piece[i].target_m = fmax(air_height_along(ray.height_m, ray.up, to_m, NULL), 0);
+        piece[i].range_m = fmax(to_m - from_m, fabs(piece[i].target_m - piece[i].observer_m));
     }
     return count;
 }
