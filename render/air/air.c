@@ -98,8 +98,8 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
               Arena *arena)
 {
     *out = (Air){.eye_height_m = fmax(eye->height_m, 0)};
-    /* ten metres of air below the eye do not change the sky above it; drops are added to an eye's path by path */
-    const bool          on_ground = out->eye_height_m < 10 && !droplets_fall(weather);
+    /* drops are added to an eye's path by path */
+    const bool          on_ground = out->eye_height_m < air_ground_eye_m && !droplets_fall(weather);
     const DaylightInput in = {.source = source,
                               .weather = weather,
                               .sun = sun,

@@ -71,8 +71,7 @@ static void shift_rows(AirLimb *limb, const AirSky *sky, const double more_w_m2_
 Status air_edge_meet(Air *air, const TableInput *in, Arena *arena)
 {
     const double eye_m = air->eye_height_m, down = sqrt(air_edge2(eye_m)), flat = sqrt(1 - down * down);
-    const double edge_m = sqrt(eye_m * (2 * earth_radius_m + eye_m)), from_m = air_from_m(air),
-                 slope = -from_m / sqrt(from_m * (2 * earth_radius_m + from_m));
+    const double edge_m = sqrt(eye_m * (2 * earth_radius_m + eye_m)), slope = air_edge_slope(air);
     if (slope < in->slope_low || slope > in->slope_high) return STATUS_OK; /* the edge is not seen */
     Edge *edge = arena_alloc_raw(arena, 1, sizeof *edge);
     if (!edge) return STATUS_NO_MEMORY;

@@ -80,6 +80,8 @@ enum { air_slopes = 24, air_shares = 40, air_turns = 12, air_lights = 4 };
 enum { air_range_row = air_ranges + 1, air_nodes = (air_rows_most + 1) * air_range_row };
 enum { air_share_row = air_shares + 1, air_slope_nodes = (air_slopes + 1) * air_share_row };
 
+/* Ten metres of air below the eye do not change the sky above it. */
+static const double air_ground_eye_m = 10;
 static const double air_top_m = 20e3, air_near_m = 100, air_far_m = 819200, air_low_m = 64;
 /* The complete path ends at the ground or the tables' top, and after 100 km, beyond which little light is added, or at
  * the Earth's edge where that is farther.
@@ -105,6 +107,7 @@ struct AirTable {
     int       rows, row_shift; /* steps of height; bits of a number within one: 20 or 21, 8 or 4 to an octave */
     bool      scattered;
     float     slope_low, slope_steps; /* s at the first step, steps per unit of s */
+    float     slope_edge, slope_steps_above; /* the same from the Earth's edge on; INFINITY: it is not seen */
     float     turn_low, turn_steps;   /* the same of sqrt(1 - cos azimuth); beyond the first and last the nearest */
     int       turns;                  /* steps between them, .. air_turns */
     int       lights;                 /* of light[] */
@@ -143,6 +146,13 @@ static inline double air_from_m(const Air *air) { return fmin(air->eye_height_m,
 static inline double air_longest_m(const Air *air)
 {
     return fmax(air_longest_way_m, sqrt(2 * earth_radius_m * air_from_m(air)));
+}
+
+/* Rise over range of the path from there to the Earth's edge. */
+static inline double air_edge_slope(const Air *air)
+{
+    const double from_m = fmax(air_from_m(air), 1e-3);
+    return -from_m / sqrt(from_m * (2 * earth_radius_m + from_m));
 }
 
 /* Along a ray from above the tables' top, where it enters the air; INFINITY: it does not. */

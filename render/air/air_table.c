@@ -13,13 +13,13 @@ enum {
     coarse_slopes = air_slopes / 2,
     coarse_shares = air_shares / 2,
     coarse_turns = air_turns / 2,
-    side_stride = 4,
-    side_slopes = coarse_slopes / side_stride,
+    side_stride = 4, /* of slopes in two pieces half that */
+    side_slopes_most = 2 * coarse_slopes / side_stride,
     side_shares = coarse_shares / side_stride,
     coarse_row = coarse_shares + 1,
     side_row = side_shares + 1,
     coarse_nodes = (coarse_slopes + 1) * coarse_row,
-    side_nodes = (side_slopes + 1) * side_row
+    side_nodes = (side_slopes_most + 1) * side_row
 };
 
 typedef double Coarse[coarse_nodes]; /* by slope, share */
@@ -30,6 +30,7 @@ struct TableJob {
     Air       *air;
     TableInput in;
     int        turns, middle; /* evaluated steps of azimuth, and the one that is evaluated in full */
+    int        first_slopes;  /* evaluated steps of slope up to the Earth's edge; 0: it is not among them */
     double     azimuth_rad[coarse_turns + 1];
     Coarse     log2_source[AIR_BAND_COUNT];            /* of scattered light at the middle azimuth */
     Side       side[AIR_BAND_COUNT][coarse_turns + 1]; /* the same elsewhere */
@@ -96,6 +97,25 @@ static void put_curve(float *out, int stride, const Curve curve)
     for (int r = 0; r <= air_ranges; r++) out[r * stride] = curve[r];
 }
 
+/* From high up to a height: a longer path meets the ground. */
+static double longest_path_m(const AirPath *path)
+{
+    static const double high_m = 1000;
+    if (path->observer_m < high_m) return INFINITY;
+    return sqrt(path->observer_m * (2 * earth_radius_m + path->observer_m)) +
+           sqrt(path->target_m * (2 * earth_radius_m + path->target_m));
+}
+
+/* Of values at octaves of range, those beyond the longest path: the first of them is that path's, and becomes what the
+ * straight line to it from the last octave before it goes on to, so that paths of nearly that length lie on that line. */
+static void go_on(Octaves value, double octaves)
+{
+    const int before = (int)fmin(octaves, air_octaves);
+    if (before == air_octaves) return;
+    value[before + 1] = value[before] + (value[before + 1] - value[before]) / fmax(octaves - before, 0.2);
+    for (int r = before + 2; r <= air_octaves; r++) value[r] = 2 * value[r - 1] - value[r - 2];
+}
+
 /* One height: all ranges. */
 static void ask_height(TableJob *job, int row)
 {
@@ -106,10 +126,10 @@ static void ask_height(TableJob *job, int row)
     DayPath         here;
     AirPath         path = {.observer_m = air_from_m(air),
                             .target_m = fmin((double)air_step_up(air_low_m, row, table->row_shift) - air_low_m, air_top_m)};
-    const double    straight_m = fabs(path.target_m - path.observer_m) * 1.0001;
+    const double    straight_m = fabs(path.target_m - path.observer_m) * 1.0001, longest_m = longest_path_m(&path);
     for (int r = 0; r <= air_octaves; r++) {
         /* no path is shorter than the vertical one: such nodes hold that one */
-        path.range_m = fmax(ldexp(air_near_m, r), straight_m);
+        path.range_m = fmin(fmax(ldexp(air_near_m, r), straight_m), longest_m);
         if (r == 0 || ldexp(air_near_m, r) > straight_m) air_day_path(&here, job->air->light.day, &path);
         for (int b = 0; b < AIR_BAND_COUNT; b++) sun[b][r] = extinction(here.sun[b], path.range_m);
         for (int t = 0; t < 2; t++) {
@@ -118,6 +138,12 @@ static void ask_height(TableJob *job, int row)
                 mean_source(here.thermal_w_m2_sr[t] * job->air->light.thermal_scale[t], here.emitted[t][air_temps]);
             for (int k = 0; k < air_temps; k++) emitted[t][k][r] = extinction(here.emitted[t][k], path.range_m);
         }
+    }
+    const double octaves = log2(longest_m / air_near_m);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) go_on(sun[b], octaves);
+    for (int t = 0; t < 2; t++) {
+        go_on(own[t], octaves), go_on(source[t], octaves);
+        for (int k = 0; k < air_temps; k++) go_on(emitted[t][k], octaves);
     }
     const int first = row * air_range_row;
     for (int g = 0; g < table->lights; g++)
@@ -144,12 +170,19 @@ static void ask_height(TableJob *job, int row)
 
 /* ---- scattered light ------------------------------------------------------------------------------- */
 
+static double slope_root(const TableJob *job, int step)
+{
+    const AirTable *table = job->air->table;
+    const int       first = job->first_slopes;
+    if (first == 0 || step <= first) return (double)(table->slope_low + (float)(2 * step) / table->slope_steps);
+    return (double)(table->slope_edge + (float)(2 * (step - first)) / table->slope_steps_above);
+}
+
 /* The path of a coarse node. */
 static AirPath path_at(const TableJob *job, int slope_step, int share_step)
 {
-    const AirTable *table = job->air->table;
     const double    eye_m = air_from_m(job->air);
-    const double    s = (double)(table->slope_low + (float)(2 * slope_step) / table->slope_steps);
+    const double    s = slope_root(job, slope_step);
     const double    slope = clamp(s * fabs(s), -1, 1);
     const double    whole_m = slope < 0 ? fmax(eye_m, air_least_fall_m) : air_top_m - eye_m;
     const double    end_m = clamp(whole_m / fmax(fabs(slope), 1e-9), air_shortest_way_m, air_longest_m(job->air));
@@ -158,21 +191,24 @@ static AirPath path_at(const TableJob *job, int slope_step, int share_step)
     return (AirPath){.observer_m = eye_m, .range_m = range_m, .target_m = clamp(eye_m + slope * range_m, 0, air_top_m)};
 }
 
+static int slope_stride(const TableJob *job) { return job->first_slopes > 0 ? side_stride / 2 : side_stride; }
+
 /* One slope: at the middle azimuth, and on a subset of the paths at all azimuths. */
 static void ask_slope(TableJob *job, int i)
 {
+    const int     stride = slope_stride(job);
     double        seen[coarse_turns + 1][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
     const double *azimuth = job->azimuth_rad;
     for (int c = 0; c <= coarse_shares; c++) {
         const AirPath path = path_at(job, i, c);
-        const bool    all = i % side_stride == 0 && c % side_stride == 0;
+        const bool    all = i % stride == 0 && c % side_stride == 0;
         if (all) air_day_scattered(seen, sun, job->air->light.day, &path, azimuth, job->turns + 1);
         else air_day_scattered(seen + job->middle, sun, job->air->light.day, &path, azimuth + job->middle, 1);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!scatters(job, b)) continue;
             job->log2_source[b][i * coarse_row + c] = log2_source(job, b, seen[job->middle][b], sun[b]);
             for (int a = 0; a <= job->turns && all; a++)
-                job->side[b][a][i / side_stride * side_row + c / side_stride] = log2_source(job, b, seen[a][b], sun[b]);
+                job->side[b][a][i / stride * side_row + c / side_stride] = log2_source(job, b, seen[a][b], sun[b]);
         }
     }
 }
@@ -192,13 +228,23 @@ static void halve_steps(double *out, int out_stride, const double *in, int in_st
     out[2 * steps * out_stride] = in[steps * in_stride];
 }
 
-/* Along both axes. fine: [2 slopes + 1][2 shares + 1]. */
-static void halve_both(double *fine, const double *coarse, int slopes, int shares)
+/* Along the paths. fine: [slopes + 1][2 shares + 1]. */
+static void halve_shares(double *fine, const double *coarse, int slopes, int shares)
 {
-    const int row = 2 * shares + 1;
+    for (int i = 0; i <= slopes; i++) halve_steps(fine + i * (2 * shares + 1), 1, coarse + i * (shares + 1), 1, shares);
+}
+
+/* Along both axes. fine: [2 slopes + 1][2 shares + 1]. first: steps of slope before the Earth's edge, over which nothing
+ * is interpolated; 0: none. */
+static void halve_both(double *fine, const double *coarse, int slopes, int shares, int first)
+{
+    const int row = shares + 1;
     double    wide[(2 * coarse_slopes + 1) * (coarse_shares + 1)];
-    for (int c = 0; c <= shares; c++) halve_steps(wide + c, shares + 1, coarse + c, shares + 1, slopes);
-    for (int i = 0; i <= 2 * slopes; i++) halve_steps(fine + i * row, 1, wide + i * (shares + 1), 1, shares);
+    for (int c = 0; c <= shares; c++) {
+        if (first > 0) halve_steps(wide + c, row, coarse + c, row, first);
+        halve_steps(wide + 2 * first * row + c, row, coarse + first * row + c, row, slopes - first);
+    }
+    halve_shares(fine, wide, 2 * slopes, shares);
 }
 
 void air_table_draw(TableJob *job, int task)
@@ -216,19 +262,21 @@ void air_table_draw(TableJob *job, int task)
         if (a == job->middle) continue;
         Side   side;
         Coarse half, ratio;
-        for (int i = 0; i <= side_slopes; i++)
+        const int stride = slope_stride(job), slopes = coarse_slopes / stride, first = job->first_slopes / 2;
+        for (int i = 0; i <= slopes; i++)
             for (int c = 0; c <= side_shares; c++)
-                side[i * side_row + c] =
-                    job->side[band][a][i * side_row + c] - job->log2_source[band][side_stride * (i * coarse_row + c)];
-        halve_both(half, side, side_slopes, side_shares);
-        halve_both(ratio, half, 2 * side_slopes, 2 * side_shares);
+                side[i * side_row + c] = job->side[band][a][i * side_row + c] -
+                                         job->log2_source[band][stride * i * coarse_row + side_stride * c];
+        if (first > 0) halve_shares(half, side, slopes, side_shares);
+        else halve_both(half, side, slopes, side_shares, 0);
+        halve_both(ratio, half, coarse_slopes / 2, 2 * side_shares, first);
         for (int n = 0; n < coarse_nodes; n++) asked[a][n] += ratio[n];
     }
     for (int n = 0; n < coarse_nodes; n++)
         halve_steps(&turned[0][n], coarse_nodes, &asked[0][n], coarse_nodes, job->turns);
     for (int a = 0; a <= 2 * job->turns; a++) {
         double fine[air_slope_nodes];
-        halve_both(fine, turned[a], coarse_slopes, coarse_shares);
+        halve_both(fine, turned[a], coarse_slopes, coarse_shares, job->first_slopes);
         for (int n = 0; n < air_slope_nodes; n++) light->log2_source[a][n][lane] = (float)(fine[n] + more);
     }
 }
@@ -249,6 +297,21 @@ static void choose_rows(AirTable *table, double high_m)
     table->row_shift = 21; /* nine octaves hold the tables' top in 36 */
 }
 
+/* Equal steps to the Earth's edge and others from there, where paths begin to miss the ground. Close to the ends of what
+ * is looked at, and from the ground, where hills hide the edge, one piece. */
+static void choose_slopes(TableJob *job, double low, double high)
+{
+    AirTable    *table = job->air->table;
+    const double edge = -sqrt(-air_edge_slope(job->air)), at = (edge - low) / (high - low) * coarse_slopes;
+    table->slope_low = (float)low, table->slope_edge = INFINITY;
+    table->slope_steps = table->slope_steps_above = (float)(air_slopes / (high - low));
+    if (job->air->eye_height_m < air_ground_eye_m || !(at > 1) || !(at < coarse_slopes - 1)) return;
+    job->first_slopes = 2 * (int)clamp(ceil(at / 2), 2, coarse_slopes / 2 - 2);
+    table->slope_edge = (float)edge;
+    table->slope_steps = (float)(2 * job->first_slopes / (edge - low));
+    table->slope_steps_above = (float)(2 * (coarse_slopes - job->first_slopes) / (high - edge));
+}
+
 Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena *arena)
 {
     TableJob *job = arena_alloc(arena, 1, sizeof *job);
@@ -263,11 +326,10 @@ Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena 
     job->turns = (int)clamp(ceil(turn_span * coarse_turns / sqrt(2) - 1e-9), 4, coarse_turns);
     job->middle = job->turns / 2;
     *table = (AirTable){.scattered = air->light.scattered_scale[AIR_PAN] > 0,
-                        .slope_low = (float)slope_low,
-                        .slope_steps = (float)(air_slopes / (slope_high - slope_low)),
                         .turn_low = (float)turn_low,
                         .turns = 2 * job->turns};
     table->turn_steps = (float)(table->turns / turn_span);
+    choose_slopes(job, slope_low, slope_high);
     choose_rows(table, input->height_high_m);
     for (int b = 0; b < AIR_LWIR; b++) {
         if (!(input->bands >> b & 1)) continue;
