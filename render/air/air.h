@@ -48,7 +48,7 @@ typedef struct AirSky {
  * point h and the Earth's radius R, a stack has equal steps of the angle whose squared cosine is a over its range from the
  * lowest to the highest ray: linear in the rate of climb where that is, and in the angle from the edge where the
  * air is thick. Row 0 of the upper one that is not empty is the sky's lowest. */
-enum { air_limb_stacks = 2, air_limb_steps = 48 };
+enum { air_limb_stacks = 2, air_limb_steps = 64 };
 typedef struct AirLimb {
     int   steps[air_limb_stacks]; /* rows but one, 0: none; more of them from higher up */
     float thermal_w_m2_sr[air_limb_stacks][air_limb_steps + 1];

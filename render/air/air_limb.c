@@ -24,7 +24,7 @@ static Range range_of(double eye_m, int stack)
 int air_limb_rows(double eye_m, int stack)
 {
     /* from low down there is less than two degrees of it */
-    if (stack == 0) return eye_m < low_eye_m ? air_limb_asks / 2 : air_limb_asks;
+    if (stack == 0) return eye_m < low_eye_m ? 3 * air_limb_asks / 8 : air_limb_asks;
     return eye_m > air_top_m ? air_limb_asks : 0;
 }
 

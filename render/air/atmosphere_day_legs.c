@@ -107,11 +107,17 @@ static void leg_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND
         memcpy(w_m2_sr, near, (size_t)azimuths * sizeof *w_m2_sr);
     }
     if (pieces == 1) return;
-    double whole[path_max_suns][AIR_BAND_COUNT]; /* its depth is not the sum of theirs */
+    const double share = air_pieces_share(leg);
+    if (!(share < 1)) { /* its depth is not the sum of theirs */
+        DayPath path;
+        day_leg_path(&path, day, ~0u, leg);
+        memcpy(sun, path.sun, sizeof path.sun);
+        return;
+    }
+    double whole[path_max_suns][AIR_BAND_COUNT];
     day_leg_scattered(whole, sun, day, leg, azimuth_rad, azimuths);
     for (int a = 0; a < azimuths; a++)
-        for (int b = 0; b < AIR_BAND_COUNT; b++)
-            w_m2_sr[a][b] = mixed(whole[a][b], w_m2_sr[a][b], air_pieces_share(leg));
+        for (int b = 0; b < AIR_BAND_COUNT; b++) w_m2_sr[a][b] = mixed(whole[a][b], w_m2_sr[a][b], share);
 }
 
 void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_COUNT], const AirDay *day,

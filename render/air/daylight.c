@@ -235,17 +235,22 @@ static void ask_around_sun(DaylightJob *job, int k)
 }
 
 /* The same from the other height, whose sky grows by tens from the zenith to the horizontal: at the sun's own height as
- * far as that goes, beyond it past the zenith to farthest_rad from there, and constant: air of nearly one length. */
+ * far as that goes, in one evaluation, beyond it past the zenith to farthest_rad from there, and constant: air of nearly
+ * one length. */
 static void ask_around_other(DaylightJob *job, int k)
 {
     static const double farthest_rad = 35 * 3.14159265358979323846 / 180;
-    const double        sun_rad = job->light->day_zenith_rad, half = sin(0.5 * ring_rad(k));
-    const bool          level = half < sin(sun_rad);
-    const double        behind_rad = fmin(ring_rad(k) - sun_rad, fmax(farthest_rad, sun_rad));
-    const double        azimuth_rad = level ? 2 * asin(half / sin(sun_rad)) : pi_rad;
-    double              thermal[2];
-    air_day_sky(&job->answer[1].around[k], thermal, job->day, job->other_m, level ? sun_rad : behind_rad, &azimuth_rad,
-                1);
+    const double        sun_rad = job->light->day_zenith_rad, most_rad = fmax(farthest_rad, sun_rad), back_rad = pi_rad;
+    const double        behind_rad = ring_rad(k) - sun_rad;
+    double(*around)[AIR_BAND_COUNT] = job->answer[1].around, thermal[2], azimuth_rad[air_sky_angles];
+    int level = 0;
+    for (; level < air_sky_angles && sin(0.5 * ring_rad(level)) < sin(sun_rad); level++)
+        azimuth_rad[level] = 2 * asin(sin(0.5 * ring_rad(level)) / sin(sun_rad));
+    if (k == 0 && level > 0) air_day_sky(around, thermal, job->day, job->other_m, sun_rad, azimuth_rad, level);
+    if (k < level || (k > level && ring_rad(k - 1) - sun_rad >= most_rad)) return; /* another has it */
+    air_day_sky(around + k, thermal, job->day, job->other_m, fmin(behind_rad, most_rad), &back_rad, 1);
+    for (int i = k + 1; i <= air_sky_angles && behind_rad >= most_rad; i++)
+        memcpy(around[i], around[k], sizeof around[i]);
 }
 
 /* One height of the sky. */
