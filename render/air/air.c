@@ -89,7 +89,8 @@ static void level_limb(AirLimb *out, const AirSky *sky)
         out->steps[stack] = 1;
         for (int i = 0; i <= 1; i++) {
             out->thermal_w_m2_sr[stack][i] = sky->thermal_w_m2_sr[0];
-            memcpy(out->scattered_w_m2_sr[stack][i], sky->scattered_w_m2_sr[0], sizeof out->scattered_w_m2_sr[stack][i]);
+            memcpy(out->scattered_w_m2_sr[stack][i], sky->scattered_w_m2_sr[0],
+                   sizeof out->scattered_w_m2_sr[stack][i]);
         }
     }
 }

@@ -43,11 +43,11 @@ typedef struct AirSky {
     float around_sun[air_sky_angles + 2]; /* one to spare at the end */
 } AirSky;
 
-/* The same from a height between the horizontal and the Earth's edge, in two stacks of rows: of rays that are lowest below
- * 20 km, the tables' top, and above it to 64 km, beyond which there is no more to see. With a = h (2 R + h) of a ray's lowest
- * point h and the Earth's radius R, a stack has equal steps of the angle whose squared cosine is a over its range from the
- * lowest to the highest ray: linear in the rate of climb where that is, and in the angle from the edge where the
- * air is thick. Row 0 of the upper one that is not empty is the sky's lowest. */
+/* The same from a height between the horizontal and the Earth's edge, in two stacks of rows: of rays that are lowest
+ * below 20 km, the tables' top, and above it to 64 km, beyond which there is no more to see. With a = h (2 R + h) of a
+ * ray's lowest point h and the Earth's radius R, a stack has equal steps of the angle whose squared cosine is a over
+ * its range from the lowest to the highest ray: linear in the rate of climb where that is, and in the angle from the
+ * edge where the air is thick. Row 0 of the upper one that is not empty is the sky's lowest. */
 enum { air_limb_stacks = 2, air_limb_steps = 64 };
 typedef struct AirLimb {
     int   steps[air_limb_stacks]; /* rows but one, 0: none; more of them from higher up */

@@ -31,7 +31,8 @@ int air_limb_rows(double eye_m, int stack)
 double air_limb_climb(double eye_m, int stack, double share)
 {
     const Range  range = range_of(eye_m, stack);
-    const double cosine = cos(0.5 * pi_rad * share), at_m2 = range.low_m2 + (range.high_m2 - range.low_m2) * cosine * cosine;
+    const double cosine = cos(0.5 * pi_rad * share),
+                 at_m2 = range.low_m2 + (range.high_m2 - range.low_m2) * cosine * cosine;
     const double down_m2 = rise2(eye_m) - (share > 0 ? at_m2 : range.high_m2);
     return -sqrt(fmax(down_m2, 0)) / (earth_radius_m + eye_m);
 }
@@ -100,7 +101,7 @@ double air_limb_there(const Air *air, int band, const LimbPlace *limb, const Sky
     const float   *low = &rows->scattered_w_m2_sr[limb->stack][i][place->azimuth], *high = low + air_sky_azimuths + 1;
     const float   *warm = &rows->thermal_w_m2_sr[limb->stack][i], thermal = warm[0] + t * (warm[1] - warm[0]);
     const float    l = low[0] + place->azimuth_share * (low[1] - low[0]),
-                   h = high[0] + place->azimuth_share * (high[1] - high[0]);
-    const double   seen = (double)(thermal + (l + t * (h - l)) * (ring[0] + place->angle_share * (ring[1] - ring[0])));
+                h = high[0] + place->azimuth_share * (high[1] - high[0]);
+    const double seen = (double)(thermal + (l + t * (h - l)) * (ring[0] + place->angle_share * (ring[1] - ring[0])));
     return limb->level > 0 ? seen + limb->level * (daylight_sky_there(&air->sky_eye[band], place) - seen) : seen;
 }

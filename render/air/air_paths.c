@@ -31,8 +31,8 @@ typedef struct Look {
     __m128i         row_shift;
     __m256i         row_mask;
     F32x8           eye_m, down_m, row_share, height_most_m, per_fall_m, per_climb_m, per_longest_m;
-    F32x8           sun_east, sun_north, slope_low, slope_steps, slope_edge, slope_steps_above, turn_low, turn_steps, turn_most;
-    F32x8           temp_low, per_ln_temp; /* of each step of emitter_temp_k */
+    F32x8 sun_east, sun_north, slope_low, slope_steps, slope_edge, slope_steps_above, turn_low, turn_steps, turn_most;
+    F32x8 temp_low, per_ln_temp; /* of each step of emitter_temp_k */
 } Look;
 
 static Look look_from(const Air *air)
@@ -98,11 +98,11 @@ static inline void find_places(Places *p, const Look *look, const Parts *parts, 
     _mm256_store_si256((__m256i *)p->node, _mm256_add_epi32(row_times(hi, air_range_row), ri));
     p->near = _mm256_min_ps(r, f32x8_set(1));
 
-    const F32x8 rise = _mm256_div_ps(rise_m, _mm256_max_ps(at, f32x8_set(1e-3)));
-    const F32x8 root = _mm256_or_ps(_mm256_sqrt_ps(f32x8_abs(rise)), _mm256_and_ps(rise, f32x8_set(-0.0)));
-    const F32x8 below = mul(sub(_mm256_min_ps(root, look->slope_edge), look->slope_low), look->slope_steps);
-    const F32x8 above = mul(_mm256_max_ps(sub(root, look->slope_edge), f32x8_set(0)), look->slope_steps_above);
-    const F32x8 s = within(add(below, above), f32x8_set(0), f32x8_set(air_slopes - 1e-3));
+    const F32x8   rise = _mm256_div_ps(rise_m, _mm256_max_ps(at, f32x8_set(1e-3)));
+    const F32x8   root = _mm256_or_ps(_mm256_sqrt_ps(f32x8_abs(rise)), _mm256_and_ps(rise, f32x8_set(-0.0)));
+    const F32x8   below = mul(sub(_mm256_min_ps(root, look->slope_edge), look->slope_low), look->slope_steps);
+    const F32x8   above = mul(_mm256_max_ps(sub(root, look->slope_edge), f32x8_set(0)), look->slope_steps_above);
+    const F32x8   s = within(add(below, above), f32x8_set(0), f32x8_set(air_slopes - 1e-3));
     const __m256i si = _mm256_cvttps_epi32(s);
     /* range over the complete path, which ends at the ground or the top, and within its limits */
     const F32x8 per_m = _mm256_blendv_ps(look->per_climb_m, look->per_fall_m, rise);
@@ -372,8 +372,8 @@ void air_paths_clear(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const 
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!out[b]) continue;
             out[b]->transmittance[i] = out[b]->sun_transmittance[i] = out[b]->air_transmittance[i] = 0;
-            out[b]->added_w_m2_sr[i] =
-                (float)(climb < 0 ? air_limb_there(air, b, &limb, &place) : daylight_sky_there(&air->sky_eye[b], &place));
+            out[b]->added_w_m2_sr[i] = (float)(climb < 0 ? air_limb_there(air, b, &limb, &place)
+                                                         : daylight_sky_there(&air->sky_eye[b], &place));
         }
     }
 }

@@ -106,11 +106,11 @@ typedef struct AirHeat {
 struct AirTable {
     int       rows, row_shift; /* steps of height; bits of a number within one: 20 or 21, 8 or 4 to an octave */
     bool      scattered;
-    float     slope_low, slope_steps; /* s at the first step, steps per unit of s */
+    float     slope_low, slope_steps;        /* s at the first step, steps per unit of s */
     float     slope_edge, slope_steps_above; /* the same from the Earth's edge on; INFINITY: it is not seen */
-    float     turn_low, turn_steps;   /* the same of sqrt(1 - cos azimuth); beyond the first and last the nearest */
-    int       turns;                  /* steps between them, .. air_turns */
-    int       lights;                 /* of light[] */
+    float     turn_low, turn_steps; /* the same of sqrt(1 - cos azimuth); beyond the first and last the nearest */
+    int       turns;                /* steps between them, .. air_turns */
+    int       lights;               /* of light[] */
     AirLight *light[2];
     AirHeat  *heat; /* NULL: no thermal band */
 };

@@ -107,7 +107,8 @@ static double longest_path_m(const AirPath *path)
 }
 
 /* Of values at octaves of range, those beyond the longest path: the first of them is that path's, and becomes what the
- * straight line to it from the last octave before it goes on to, so that paths of nearly that length lie on that line. */
+ * straight line to it from the last octave before it goes on to, so that paths of nearly that length lie on that line.
+ */
 static void go_on(Octaves value, double octaves)
 {
     const int before = (int)fmin(octaves, air_octaves);
@@ -181,13 +182,13 @@ static double slope_root(const TableJob *job, int step)
 /* The path of a coarse node. */
 static AirPath path_at(const TableJob *job, int slope_step, int share_step)
 {
-    const double    eye_m = air_from_m(job->air);
-    const double    s = slope_root(job, slope_step);
-    const double    slope = clamp(s * fabs(s), -1, 1);
-    const double    whole_m = slope < 0 ? fmax(eye_m, air_least_fall_m) : air_top_m - eye_m;
-    const double    end_m = clamp(whole_m / fmax(fabs(slope), 1e-9), air_shortest_way_m, air_longest_m(job->air));
-    const double    share = fmax((double)share_step / coarse_shares, 0.01); /* not quite nothing */
-    const double    range_m = share * share * end_m;
+    const double eye_m = air_from_m(job->air);
+    const double s = slope_root(job, slope_step);
+    const double slope = clamp(s * fabs(s), -1, 1);
+    const double whole_m = slope < 0 ? fmax(eye_m, air_least_fall_m) : air_top_m - eye_m;
+    const double end_m = clamp(whole_m / fmax(fabs(slope), 1e-9), air_shortest_way_m, air_longest_m(job->air));
+    const double share = fmax((double)share_step / coarse_shares, 0.01); /* not quite nothing */
+    const double range_m = share * share * end_m;
     return (AirPath){.observer_m = eye_m, .range_m = range_m, .target_m = clamp(eye_m + slope * range_m, 0, air_top_m)};
 }
 
@@ -234,8 +235,8 @@ static void halve_shares(double *fine, const double *coarse, int slopes, int sha
     for (int i = 0; i <= slopes; i++) halve_steps(fine + i * (2 * shares + 1), 1, coarse + i * (shares + 1), 1, shares);
 }
 
-/* Along both axes. fine: [2 slopes + 1][2 shares + 1]. first: steps of slope before the Earth's edge, over which nothing
- * is interpolated; 0: none. */
+/* Along both axes. fine: [2 slopes + 1][2 shares + 1]. first: steps of slope before the Earth's edge, over which
+ * nothing is interpolated; 0: none. */
 static void halve_both(double *fine, const double *coarse, int slopes, int shares, int first)
 {
     const int row = shares + 1;
@@ -260,8 +261,8 @@ void air_table_draw(TableJob *job, int task)
     for (int a = 0; a <= job->turns; a++) {
         memcpy(asked[a], job->log2_source[band], sizeof asked[a]);
         if (a == job->middle) continue;
-        Side   side;
-        Coarse half, ratio;
+        Side      side;
+        Coarse    half, ratio;
         const int stride = slope_stride(job), slopes = coarse_slopes / stride, first = job->first_slopes / 2;
         for (int i = 0; i <= slopes; i++)
             for (int c = 0; c <= side_shares; c++)
@@ -297,8 +298,8 @@ static void choose_rows(AirTable *table, double high_m)
     table->row_shift = 21; /* nine octaves hold the tables' top in 36 */
 }
 
-/* Equal steps to the Earth's edge and others from there, where paths begin to miss the ground. Close to the ends of what
- * is looked at, and from the ground, where hills hide the edge, one piece. */
+/* Equal steps to the Earth's edge and others from there, where paths begin to miss the ground. Close to the ends of
+ * what is looked at, and from the ground, where hills hide the edge, one piece. */
 static void choose_slopes(TableJob *job, double low, double high)
 {
     AirTable    *table = job->air->table;
@@ -325,9 +326,8 @@ Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena 
     /* evaluated over a sixth of the full circle at most, over a quarter of the view at least */
     job->turns = (int)clamp(ceil(turn_span * coarse_turns / sqrt(2) - 1e-9), 4, coarse_turns);
     job->middle = job->turns / 2;
-    *table = (AirTable){.scattered = air->light.scattered_scale[AIR_PAN] > 0,
-                        .turn_low = (float)turn_low,
-                        .turns = 2 * job->turns};
+    *table = (AirTable){
+        .scattered = air->light.scattered_scale[AIR_PAN] > 0, .turn_low = (float)turn_low, .turns = 2 * job->turns};
     table->turn_steps = (float)(table->turns / turn_span);
     choose_slopes(job, slope_low, slope_high);
     choose_rows(table, input->height_high_m);

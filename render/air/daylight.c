@@ -205,15 +205,15 @@ typedef struct SkyAnswers {
 
 struct DaylightJob {
     Daylight     *light;
-    AirSky       *other; /* [AIR_BAND_COUNT], the sky from other_m up; NULL: of the ground alone */
-    AirLimb      *limb;  /* and below */
+    AirSky       *other;                  /* [AIR_BAND_COUNT], the sky from other_m up; NULL: of the ground alone */
+    AirLimb      *limb;                   /* and below */
     int           limbs[air_limb_stacks]; /* rows of it that are evaluated, less one */
     double        other_m;
     const AirDay *day;
     unsigned      bands;
     double        diffuse_w_m2[AIR_BAND_COUNT];
     double        azimuth_rad[air_sky_asked_azimuths + 1];
-    SkyAnswers    answer[2]; /* from the ground, from other_m */
+    SkyAnswers    answer[2];              /* from the ground, from other_m */
     SkyRows       below[air_limb_stacks]; /* of limb */
     Lamps         lamp;
     float         w_m2[AIR_BAND_COUNT][lamps];
@@ -235,8 +235,8 @@ static void ask_around_sun(DaylightJob *job, int k)
 }
 
 /* The same from the other height, whose sky grows by tens from the zenith to the horizontal: at the sun's own height as
- * far as that goes, in one evaluation, beyond it past the zenith to farthest_rad from there, and constant: air of nearly
- * one length. */
+ * far as that goes, in one evaluation, beyond it past the zenith to farthest_rad from there, and constant: air of
+ * nearly one length. */
 static void ask_around_other(DaylightJob *job, int k)
 {
     static const double farthest_rad = 35 * 3.14159265358979323846 / 180;
@@ -329,7 +329,8 @@ void air_sky_azimuth_row(double out[air_sky_azimuths + 1], const double in[air_s
 {
     for (int a = 0; a <= air_sky_azimuths; a++) {
         const int low = a / sky_stride < air_sky_asked_azimuths ? a / sky_stride : air_sky_asked_azimuths - 1;
-        const int below = low > 0 ? low - 1 : 1, above = low + 2 <= air_sky_asked_azimuths ? low + 2 : air_sky_asked_azimuths - 1;
+        const int below = low > 0 ? low - 1 : 1,
+                  above = low + 2 <= air_sky_asked_azimuths ? low + 2 : air_sky_asked_azimuths - 1;
         out[a] = cubic_between(in[below], in[low], in[low + 1], in[above], (double)(a - low * sky_stride) / sky_stride);
     }
 }
