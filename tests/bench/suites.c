@@ -69,6 +69,8 @@ static const BenchSuite suites[] = {
      .room = "render",
      .help = "the air by the weather, the sun that heats",
      .run = bench_precision_weather},
+    {.name = "precision", .room = "render", .help = "the round air below the horizontal", .run = bench_precision_limb},
+    {.name = "precision", .room = "render", .help = "unlit sides against a path tracer", .run = bench_precision_faces},
     {.name = "precision", .room = "render", .help = "rays against ground and parts", .run = bench_precision_trace},
     {.name = "precision",
      .room = "render",

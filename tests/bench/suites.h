@@ -38,6 +38,8 @@ Status bench_stability_models(Bench *bench);
 Status bench_precision_light(Bench *bench);
 Status bench_precision_air(Bench *bench);
 Status bench_precision_weather(Bench *bench);
+Status bench_precision_limb(Bench *bench);
+Status bench_precision_faces(Bench *bench);
 Status bench_precision_trace(Bench *bench);
 Status bench_precision_heat(Bench *bench);
 Status bench_precision_network(Bench *bench); /* precision_vehicle.c: steps in time */

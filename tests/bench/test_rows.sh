@@ -78,7 +78,10 @@ precision/render)
     done
     rows "shade of past hours: ground that was never shaded" "weather: transmittance, 3.4-4.8 um.*,yes," \
         "weather: longwave.*,yes," "weather: rain.*,yes," "weather: direct sun.*,yes," \
-        "daylight, b, sun from 18 degrees" "daylight, nir, sun 8 degrees up" ;;
+        "daylight, b, sun from 18 degrees" "daylight, nir, sun 8 degrees up" "limb: sky past the Earth, 3.4-4.8 um.*,yes," \
+        "limb: sky past the Earth, 8-12 um.*,yes," "limb: ground to the horizon, 3.4-4.8 um.*,yes," \
+        "limb: ground to the horizon, 8-12 um.*,yes," "faces: unlit sides of a box, over grass.*,yes," \
+        "faces: unlit sides of a box, over snow.*,yes," ;;
 precision/sensor)
     tunables "plants simplified" "rays a pixel among plants" "reach of low plants" "light between leaves" "rays a pixel" \
         "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
