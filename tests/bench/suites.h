@@ -54,6 +54,7 @@ Status bench_stability_ground(Bench *bench);   /* rays against the height field 
 Status bench_stability_light(Bench *bench);    /* Planck, air, smoke, surfaces */
 Status bench_stability_sun(Bench *bench);      /* the sun at the horizon, overhead, behind */
 Status bench_stability_air(Bench *bench);      /* any weather, any height */
+Status bench_stability_horizon(Bench *bench);  /* bending rays, the Earth beyond the outline */
 Status bench_stability_pictures(Bench *bench); /* ranges, origins, views, sizes */
 Status bench_stability_crowd(Bench *bench);    /* numbers of entities, positions of the eye, the radar */
 Status bench_stability_plants(Bench *bench);   /* rays against plants */

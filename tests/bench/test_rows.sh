@@ -101,6 +101,7 @@ stability/entities)
         "model files: needles" ;;
 stability/render)
     rows "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" "sun: " "air: any weather" "air: across" \
+        "refraction: eyes" "refraction: dip" "beyond: dip" "beyond: tangent" "beyond: height across" "beyond: pictures" \
         "picture: a block" "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "plants: leaves edge-on" \
         "plants: skimmed tops" "plants: trees at the origin and 200 km" "plants: a million trees" "heat: 1 K to 2000 K" \
         "heat: the same: energy" "heat: polar day and night" "heat: 1950 and 2090" "heat: seven threads" \
