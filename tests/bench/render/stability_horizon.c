@@ -265,10 +265,10 @@ static double any_picture(void *user, bool quick)
     if (!kept) return INFINITY;
     for (int k = 0; k < (quick ? 2 : origins); k++)
         for (int n = 0; n < 15; n++) {
-            const double eye_m = eyes_m[n / 3], eye[3] = {0, 0, eye_m};
-            const double dip = n % 3 == 1 ? acos(earth_m / (earth_m + fmax(eye_m, 0))) : 0;
-            const double level[3] = {0.6 * cos(dip), 0.8 * cos(dip), -sin(dip)}, down[3] = {0, 0, -1};
-            const View   view = stress_view(eye, n % 3 == 2 ? down : level, 0, 33, 24, n % 2 ? 40 : 2000);
+            const double  eye_m = eyes_m[n / 3], eye[3] = {0, 0, eye_m};
+            const double  dip = n % 3 == 1 ? acos(earth_m / (earth_m + fmax(eye_m, 0))) : 0;
+            const double  level[3] = {0.6 * cos(dip), 0.8 * cos(dip), -sin(dip)}, down[3] = {0, 0, -1};
+            const View    view = stress_view(eye, n % 3 == 2 ? down : level, 0, 33, 24, n % 2 ? 40 : 2000);
             RenderRequest request = stress_request(&view);
             request.refraction = true;
             if ((n == 0 && !go_to(h, k)) || stress_real_air(w, 0.5, fmax(eye_m, 0)) != STATUS_OK) {
