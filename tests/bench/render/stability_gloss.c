@@ -1,5 +1,6 @@
-/* tests/bench/render/stability_gloss.c: gloss that shows what is near, under stress: any light, blocks that touch, cross
- * and sink into the ground, any paint. References: an even light on white surfaces, which all of it leaves even. */
+/* tests/bench/render/stability_gloss.c: gloss that shows what is near, under stress: any light, blocks that touch,
+ * cross and sink into the ground, any paint. References: an even light on white surfaces, which all of it leaves even.
+ */
 #include "tests/bench/suites.h"
 #include "render/light/hemisphere.h"
 #include "render/light/optical.h"
@@ -7,8 +8,8 @@
 
 /* ---- the factors ---------------------------------------------------------------------------------- */
 
-/* Wrong are: factors that are not 0 .. 100, another than 1 where nothing changes, one that falls as light is added, and a
- * step of more than 1e-6 over one of 1e-9 in the tilt or the light. */
+/* Wrong are: factors that are not 0 .. 100, another than 1 where nothing changes, one that falls as light is added, and
+ * a step of more than 1e-6 over one of 1e-9 in the tilt or the light. */
 static double any_light(void *user, bool quick)
 {
     static const double odd[] = {0, -1e-300, 1e-300, 1e-40, 1e300, -1e300, 1, -1};
@@ -69,7 +70,8 @@ static void paint_all(StressWorld *w, const Material *block, float ground_rho)
     for (int k = 0; k < SURFACE_COUNT; k++) m->material[m->surface[k]] = ground;
 }
 
-/* White ground, white blocks of any gloss and roughness, no sun, a sky of one radiance: everything has that radiance. */
+/* White ground, white blocks of any gloss and roughness, no sun, a sky of one radiance: everything has that radiance.
+ */
 static double even_light(void *user, bool quick)
 {
     static const double gap_m[] = {-0.5, 0, 1e-6, 1e-3, 0.05, 0.4, 3}, sun[3] = {0, -0.6, 0.8}, light = 5;
@@ -115,7 +117,8 @@ Status bench_stability_gloss(Bench *bench)
 {
     static const StressCase cases[] = {
         {"gloss: factors of any light near a surface", any_light, 0, "values", "0 .. 100; 1 of no change; no step"},
-        {"gloss: white blocks that touch and cross, even light", even_light, 1e-5, "relative", "that light, everywhere"},
+        {"gloss: white blocks that touch and cross, even light", even_light, 1e-5, "relative",
+         "that light, everywhere"},
         {"gloss: any paint and metal, any sun, blocks in each other", any_paint, 0, "values", "finite, not below 0"},
     };
     StressWorld world;

@@ -23,10 +23,8 @@ static const SeaView views[settings] = {
     {"beyond: frame from 14 km, the horizon", 14e3, 0.066, 0.3, true, 4},
     {"beyond: frame from 99 km, the horizon", 99e3, 0.17, 0.3, true, 4},
 };
-static const char *const compared[settings] = {[1] = "straight rays",
-                                               [3] = "straight rays",
-                                               [5] = "within the outline",
-                                               [6] = "within the outline"};
+static const char *const compared[settings] = {
+    [1] = "straight rays", [3] = "straight rays", [5] = "within the outline", [6] = "within the outline"};
 
 static RenderRequest sea_request(const Speed *s, const SeaView *of)
 {

@@ -53,12 +53,12 @@ Status speed_gloss(Speed *s, const RenderRequest *close)
     static const char *const name[settings] = {"gloss: unlit side of a close target, it shows what is near",
                                                "gloss: the same, without contact shadows",
                                                "gloss: the same, with them, paint without gloss"};
-    Materials *m = &s->close.world.materials;
-    Material  *material[2];
-    BenchWork  work[settings];
-    BenchTime  time[settings];
-    GlossFrame gloss[settings];
-    char       what[what_size];
+    Materials               *m = &s->close.world.materials;
+    Material                *material[2];
+    BenchWork                work[settings];
+    BenchTime                time[settings];
+    GlossFrame               gloss[settings];
+    char                     what[what_size];
     bench_progress(s->bench, "gloss");
     for (int k = 0; k < 2; k++) {
         if (!(material[k] = malloc((size_t)m->count * sizeof *m->material))) return STATUS_NO_MEMORY;
@@ -129,8 +129,7 @@ static void lit_frame(void *user)
     if (l->status == STATUS_OK)
         l->status = render(&picture, world, &l->frame.snapshot, request, &l->air, l->frame.pool, l->arena);
     const DisplaysOf of = {.config = &config, .picture = &picture, .camera = &camera};
-    if (l->status == STATUS_OK)
-        l->status = frame_displays_make(display, &of, request->bands, l->frame.pool, l->arena);
+    if (l->status == STATUS_OK) l->status = frame_displays_make(display, &of, request->bands, l->frame.pool, l->arena);
     if (l->status != STATUS_OK) return;
     frame_display_quantise(l->shown, &display[BAND_OPTICAL], (size_t)picture.width * (size_t)picture.height, 8);
     bench_keep(l->shown);

@@ -74,8 +74,8 @@ static double no_jump(void *user, bool quick)
     return fabs(worst);
 }
 
-/* As the sun sinks from where the level is held, a grey of 4 lux, into the night: by how much a picture is brighter than
- * any before it. */
+/* As the sun sinks from where the level is held, a grey of 4 lux, into the night: by how much a picture is brighter
+ * than any before it. */
 static double darker(void *user, bool quick)
 {
     Shown *s = user;
