@@ -5,10 +5,11 @@
 /* Runs the stress cases of render, in order; a case that fails does not stop the rest. */
 static Status bench_stability_render(Bench *bench)
 {
-    static Status (*const part[])(Bench *) = {bench_stability_parts,   bench_stability_ground, bench_stability_light,
-                                              bench_stability_sun,     bench_stability_air,    bench_stability_pictures,
-                                              bench_stability_crowd,   bench_stability_plants, bench_stability_heat,
-                                              bench_stability_network, bench_stability_radar};
+    static Status (*const part[])(Bench *) = {bench_stability_parts,  bench_stability_ground,   bench_stability_light,
+                                              bench_stability_sun,    bench_stability_air,      bench_stability_horizon,
+                                              bench_stability_gloss,  bench_stability_pictures, bench_stability_crowd,
+                                              bench_stability_plants, bench_stability_heat,     bench_stability_network,
+                                              bench_stability_radar};
     Status failed = STATUS_OK;
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         const Status status = part[k](bench);
@@ -69,6 +70,8 @@ static const BenchSuite suites[] = {
      .room = "render",
      .help = "the air by the weather, the sun that heats",
      .run = bench_precision_weather},
+    {.name = "precision", .room = "render", .help = "the round air below the horizontal", .run = bench_precision_limb},
+    {.name = "precision", .room = "render", .help = "unlit sides against a path tracer", .run = bench_precision_faces},
     {.name = "precision", .room = "render", .help = "rays against ground and parts", .run = bench_precision_trace},
     {.name = "precision",
      .room = "render",
@@ -107,6 +110,10 @@ static const BenchSuite suites[] = {
          "radar are of one with phase: its targets, and whole updates."},
     {.name = "speed",
      .room = "sensor",
+     .help = "frames over the sea: rays that bend, the Earth beyond the terrain's outline",
+     .run = bench_speed_horizon},
+    {.name = "speed",
+     .room = "sensor",
      .help = "a 94 GHz seeker's radar: a target in a new bin of aspect and in one at hand, ten of them with clutter; "
              "what the ground's mirror costs",
      .run = bench_speed_radar},
@@ -142,6 +149,10 @@ static const BenchSuite suites[] = {
      .room = "sensor",
      .help = "detectors of 1 to 16 bits, displays without contrast, threads that agree",
      .run = bench_stability_detector},
+    {.name = "stability",
+     .room = "sensor",
+     .help = "twilight on the display, from day to night",
+     .run = bench_stability_twilight},
     {.name = "quality",
      .room = "sensor",
      .options = "table=FILE: written too; quality.* picks from etc/quality.csv",

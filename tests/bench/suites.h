@@ -38,6 +38,8 @@ Status bench_stability_models(Bench *bench);
 Status bench_precision_light(Bench *bench);
 Status bench_precision_air(Bench *bench);
 Status bench_precision_weather(Bench *bench);
+Status bench_precision_limb(Bench *bench);
+Status bench_precision_faces(Bench *bench);
 Status bench_precision_trace(Bench *bench);
 Status bench_precision_heat(Bench *bench);
 Status bench_precision_network(Bench *bench); /* precision_vehicle.c: steps in time */
@@ -52,6 +54,8 @@ Status bench_stability_ground(Bench *bench);   /* rays against the height field 
 Status bench_stability_light(Bench *bench);    /* Planck, air, smoke, surfaces */
 Status bench_stability_sun(Bench *bench);      /* the sun at the horizon, overhead, behind */
 Status bench_stability_air(Bench *bench);      /* any weather, any height */
+Status bench_stability_horizon(Bench *bench);  /* bending rays, the Earth beyond the outline */
+Status bench_stability_gloss(Bench *bench);    /* gloss near things */
 Status bench_stability_pictures(Bench *bench); /* ranges, origins, views, sizes */
 Status bench_stability_crowd(Bench *bench);    /* numbers of entities, positions of the eye, the radar */
 Status bench_stability_plants(Bench *bench);   /* rays against plants */
@@ -63,6 +67,7 @@ Status bench_stability_radar(Bench *bench);    /* the field of a radar target */
 
 Status bench_speed(Bench *bench);             /* a frame, its rays alone, what comes before and after it */
 Status bench_speed_check(const Bench *bench); /* its options */
+Status bench_speed_horizon(Bench *bench);     /* bending rays over the sea, the Earth beyond the outline */
 Status bench_speed_radar(Bench *bench);       /* the radar with phase: targets by signatures, updates */
 Status bench_woods(Bench *bench);             /* woods_frames.c: frames of three million trees */
 Status bench_woods_check(const Bench *bench); /* its options */
@@ -71,6 +76,7 @@ Status bench_network_publish(Bench *bench);   /* shared memory and video of a li
 Status bench_skip(Bench *bench);              /* skip_frames.c: the time that each exact skip saves */
 Status bench_precision(Bench *bench);         /* frames, models and detectors; precision.h has its parts */
 Status bench_stability_detector(Bench *bench);
+Status bench_stability_twilight(Bench *bench);  /* twilight on the display */
 Status bench_quality(Bench *bench);             /* quality_rows.c: the table from which quality.* selects */
 Status bench_quality_check(const Bench *bench); /* its options */
 

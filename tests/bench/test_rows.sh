@@ -43,7 +43,12 @@ speed)
         "heat of the ground: 100 m up.*no shadows" "heat of the ground: 100 m up.*with shadows" "heat of a vehicle: a step" \
         "heat of the vehicles: the longest" "heat of the vehicles: the mean" "100 m up: default quality.*,yes," \
         "set-up: ground" "set-up: catalog" "set-up: places of plants" "set-up: plants grown" "set-up: ground warmed up" \
-        "set-up: twenty tanks" "set-up: all" "sweep: a variant" "air: tables of a frame.*,yes," "air: the same from 10 km.*,yes," "memory: posts" "memory: arena" "memory: resident"
+        "set-up: twenty tanks" "set-up: all" "sweep: a variant" "air: tables of a frame.*,yes," "air: the same from 10 km.*,yes," \
+        "sea: frame from 20 m, level, rays bend.*,yes," "sea: frame from 10 km, level, rays bend.*,yes," \
+        "beyond: frame from 14 km, the horizon.*,yes," "beyond: frame from 99 km, the horizon.*,yes," \
+        "gloss: unlit side of a close target.*,yes," "gloss: the same, without contact shadows" \
+        "twilight: optical frame and its display, sun at -6 degrees.*,yes," \
+        "twilight: optical frame and its display, sun at -18 degrees.*,yes," "memory: posts" "memory: arena" "memory: resident"
     run bench speed --quick --size 17
     check "a size that is none is refused" [ $code = 2 ]
     check "and said" complained "size: '17' is not"
@@ -78,7 +83,10 @@ precision/render)
     done
     rows "shade of past hours: ground that was never shaded" "weather: transmittance, 3.4-4.8 um.*,yes," \
         "weather: longwave.*,yes," "weather: rain.*,yes," "weather: direct sun.*,yes," \
-        "daylight, b, sun from 18 degrees" "daylight, nir, sun 8 degrees up" ;;
+        "daylight, b, sun from 18 degrees" "daylight, nir, sun 8 degrees up" "limb: sky past the Earth, 3.4-4.8 um.*,yes," \
+        "limb: sky past the Earth, 8-12 um.*,yes," "limb: ground to the horizon, 3.4-4.8 um.*,yes," \
+        "limb: ground to the horizon, 8-12 um.*,yes," "faces: unlit sides of a box, over grass.*,yes," \
+        "faces: unlit sides of a box, over snow.*,yes," ;;
 precision/sensor)
     tunables "plants simplified" "rays a pixel among plants" "reach of low plants" "light between leaves" "rays a pixel" \
         "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
@@ -98,12 +106,14 @@ stability/entities)
         "model files: needles" ;;
 stability/render)
     rows "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" "sun: " "air: any weather" "air: across" \
+        "refraction: eyes" "refraction: dip" "beyond: dip" "beyond: tangent" "beyond: height across" "beyond: pictures" \
+        "gloss: factors" "gloss: white blocks" "gloss: any paint" \
         "picture: a block" "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "plants: leaves edge-on" \
         "plants: skimmed tops" "plants: trees at the origin and 200 km" "plants: a million trees" "heat: 1 K to 2000 K" \
         "heat: the same: energy" "heat: polar day and night" "heat: 1950 and 2090" "heat: seven threads" \
         "heat: back and forth in time" "network: 1 K to 2000 K" "network: the same: temperatures" ;;
 stability/sensor)
-    rows "detector: " "display: " "threads: " ;;
+    rows "detector: " "display: " "threads: " "twilight: displays, sun" "twilight: displays, largest" "twilight: displays grow" ;;
 woods)
     for view in "100 m up, 5 degrees down" "300 m up, 10 degrees down" "300 m up, 8 down, 6 wide" "1000 m up, 20 degrees down"; do
         rows "$view: one ray a pixel, full detail.*planes of one thread, nothing skipped\",yes,"

@@ -2,6 +2,7 @@
  * labels: physics */
 #include "tests/check.h"
 
+#include "terrain/earth/refraction.h"
 #include "terrain/earth/sun.h"
 
 /* Reda and Andreas, "Solar Position Algorithm for Solar Radiation Applications", NREL/TP-560-34302, appendix A.5:
@@ -212,6 +213,70 @@ static void refraction_ends_with_the_disc(void **state)
     CHECK(bent > 0 && straight > 0);
 }
 
+/* Degrees above the horizontal by the almanac: no refraction, no parallax. */
+static double almanac_deg(double unix_s, const Geodetic *place)
+{
+    double d_enu[3];
+    almanac(d_enu, unix_s, place);
+    return asin(d_enu[2]) / rad_per_deg;
+}
+
+static Sun standard_sun(double unix_s, const Geodetic *place) /* 1010 mbar and 10 C, where refraction is 34' */
+{
+    Sun sun;
+    CHECK(sun_at(&sun, unix_s, place, 1010, 10, NAN) == STATUS_OK);
+    return sun;
+}
+
+/* The Nautical Almanac, and USNO: the sun rises and sets with its centre 90 degrees 50' from the zenith, 34' by
+ * refraction at the horizon and 16' of semidiameter (959.63" at 1 AU: 15.73' to 16.27'). The centre's place without air
+ * is of the almanac's formulas: 0.02 degree as above. 48 mornings and evenings of four latitudes; without air the limb
+ * would rise 34' = 0.57 degree too high. */
+static void rises_and_sets_by_the_almanac(void **state)
+{
+    (void)state;
+    static const double lat_deg[] = {-50, -12, 35, 60};
+    for (int n = 0; n < 96; n++) {
+        const Geodetic place = {lat_deg[n % 4] * rad_per_deg, 0, 0};
+        const double   noon_s = mid_month_s(2026, 1 + n / 4 % 12), way_s = n < 48 ? -43200 : 43200; /* in UTC, at 0 E */
+        double         down_s = noon_s + way_s, up_s = noon_s;
+        while (fabs(up_s - down_s) > 1e-3) {
+            const double middle_s = 0.5 * (up_s + down_s);
+            const Sun    sun = standard_sun(middle_s, &place);
+            const double limb_deg = sun.elevation_rad / rad_per_deg + 959.63 / 3600 / sun.distance_au;
+            if (limb_deg > 0) up_s = middle_s;
+            else down_s = middle_s;
+        }
+        CHECK_NEAR(90 - almanac_deg(up_s, &place), 90 + 50.0 / 60, 0.02 + 0.3 / 60);
+    }
+}
+
+/* From a raised eye the sea's horizon is 1.76' sqrt(m) lower, and so is the limb on it: 90 degrees 50' + 1.76' sqrt(m).
+ * A limb is a point of the sun that air raises as it raises the centre when that is there; the dip is
+ * terrain/earth/refraction.h's, 1.797' sqrt(m). The almanac leaves out what the air between the eye and its horizon
+ * adds, 0.13 of that arc: 1.9' at 50 m (27 km); SPA's formula has 2.7' there. Higher up it ends: 50' below the
+ * horizontal. */
+static void rises_sooner_over_a_lower_horizon(void **state)
+{
+    (void)state;
+    static const double eye_m[] = {0, 4, 10, 25, 50};
+    const Geodetic      place = {0.1, 0, 0};
+    for (int n = 0; n < 5; n++) {
+        const double bend = refraction_bend(REFRACTION_OPTICAL, eye_m[n], 0);
+        const double dip_deg = 2 * sqrt((0.5 / 6371e3 - bend) * eye_m[n]) / rad_per_deg;
+        double       down_s = mid_month_s(2026, 3) - 43200, up_s = mid_month_s(2026, 3);
+        while (up_s - down_s > 1e-3) {
+            const double middle_s = 0.5 * (up_s + down_s);
+            if (standard_sun(middle_s, &place).elevation_rad / rad_per_deg > -dip_deg) up_s = middle_s;
+            else down_s = middle_s;
+        }
+        const double zenith_deg = 90 - almanac_deg(up_s, &place) + 16.0 / 60;
+        const double more_deg = zenith_deg - (90 + (50 + 1.76 * sqrt(eye_m[n])) / 60);
+        printf("from %.0f m: %.2f' farther from the zenith than the almanac's\n", eye_m[n], 60 * more_deg);
+        CHECK(fabs(more_deg) < 0.02 + (0.5 + 0.45 * sqrt(eye_m[n])) / 60);
+    }
+}
+
 /* The first second is 1900-01-01T00:00Z (NTP's epoch: 2208988800 s before Unix's), the last one 2100-12-31T23:59:59Z.
  */
 static void limits_are_inclusive_where_they_say(void **state)
@@ -262,6 +327,8 @@ int main(void)
         cmocka_unit_test(delta_t_of_utc_follows_leap_seconds),
         cmocka_unit_test(delta_t_after_the_leap_seconds),
         cmocka_unit_test(refraction_ends_with_the_disc),
+        cmocka_unit_test(rises_and_sets_by_the_almanac),
+        cmocka_unit_test(rises_sooner_over_a_lower_horizon),
         cmocka_unit_test(limits_are_inclusive_where_they_say),
         cmocka_unit_test(bad_input),
     };

@@ -61,7 +61,7 @@ static double differs(const Speed *s, const TrialFrame *frame)
     return strcmp(hash, plain_hash) != 0;
 }
 
-static void judge_bits(BenchRow *row, const Speed *s, const TrialFrame *frame)
+void speed_judge_bits(BenchRow *row, const Speed *s, const TrialFrame *frame)
 {
     row->error = differs(s, frame);
     row->error_limit = 0;
@@ -149,7 +149,7 @@ static Status time_view(Speed *s, int v)
     row.ratio = bench_ratio(&time[MANY], &time[RAW]);
     row.to = "rays alone";
     trial_frame(&many);
-    judge_bits(&row, s, &many);
+    speed_judge_bits(&row, s, &many);
     judge_frame(&row, &many);
     bench_add(s->bench, &row);
 
@@ -275,7 +275,7 @@ static Status time_picture(Speed *s, const char *name, const TrialScene *scene, 
     BenchRow row = bench_row_of(what, &time[0], "frames/s", 1);
     row.ratio = bench_ratio(&time[1], &time[0]);
     row.to = "1 thread / this";
-    judge_bits(&row, s, &many);
+    speed_judge_bits(&row, s, &many);
     judge_frame(&row, &many);
     bench_add(s->bench, &row);
     return many.status;
@@ -324,7 +324,8 @@ static Status time_close(Speed *s)
     if (status == STATUS_OK) status = time_picture(s, name, &s->close, &optical);
     TrialFrame simple = speed_frame(s, &s->close, &plain, false), one = speed_frame(s, &s->close, &request, false);
     if (status == STATUS_OK) status = time_stages(s, "close target, one ray a pixel, 1 thread", &simple, 1);
-    return status == STATUS_OK ? time_stages(s, "close target, 1 thread", &one, 1) : status;
+    if (status == STATUS_OK) status = time_stages(s, "close target, 1 thread", &one, 1);
+    return status == STATUS_OK ? speed_gloss(s, &request) : status;
 }
 
 /* ---- the suite -------------------------------------------------------------------------------- */
@@ -373,6 +374,8 @@ static Status time_all(Speed *s)
     const RenderRequest usual = trial_default_request(&s->scene, &wide, places[1].back_m);
     if (status == STATUS_OK)
         status = time_picture(s, "100 m up: default quality, all bands, truth and its error", &s->scene, &usual);
+    const RenderRequest wide_request = speed_request(&wide, three_bands, true);
+    if (status == STATUS_OK) status = speed_twilight(s, &wide_request);
     if (status == STATUS_OK) status = speed_files(s);
     if (status == STATUS_OK) status = speed_heat(s);
     if (status == STATUS_OK) status = speed_start(s);
@@ -392,11 +395,6 @@ Status bench_speed(Bench *bench)
     Speed        s = {.bench = bench};
     const Status status = time_all(&s);
     if (status != STATUS_OK) log_error("bench: speed: %s", status_name(status));
-    trial_scene_close(&s.close);
-    trial_scene_close(&s.scene);
-    landscape_destroy(&s.landscape);
-    for (int k = 0; k < 3; k++) arena_destroy(s.arena[k]);
-    pool_destroy(s.many);
-    pool_destroy(s.one);
+    speed_close(&s);
     return status;
 }

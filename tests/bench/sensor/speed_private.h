@@ -25,11 +25,17 @@ typedef struct Speed {
 /* Opens size, pools and arenas by the options, the ground with its rows, and the scene of the close target. */
 Status speed_open(Speed *s);
 Status speed_make_ground(Speed *s);
+void   speed_close(Speed *s); /* all of it, also after a failure */
 Status speed_open_close(Speed *s);
 /* Whether the rows of `optical` (pictures of all bands) or `radar` are asked for: --bands names one of them. */
 bool          speed_wants(const Bench *bench, const char *rows);
 RenderRequest speed_request(const View *view, unsigned bands, bool truth);
 TrialFrame    speed_frame(const Speed *s, const TrialScene *scene, const RenderRequest *request, bool many);
+/* Into a row, whether the planes of a frame are those of one thread without skips; its limit: they are. */
+void speed_judge_bits(BenchRow *row, const Speed *s, const TrialFrame *frame);
+/* Makes the rows of gloss on the other side of the close target, of twilight. */
+Status speed_gloss(Speed *s, const RenderRequest *close);
+Status speed_twilight(Speed *s, const RenderRequest *of);
 /* Makes the rows of a frame's files and of memory. */
 Status speed_files(Speed *s);
 void   speed_memory(Speed *s);

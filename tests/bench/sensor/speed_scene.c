@@ -79,6 +79,16 @@ Status speed_open(Speed *s)
     return status;
 }
 
+void speed_close(Speed *s)
+{
+    trial_scene_close(&s->close);
+    trial_scene_close(&s->scene);
+    landscape_destroy(&s->landscape);
+    for (int k = 0; k < 3; k++) arena_destroy(s->arena[k]);
+    pool_destroy(s->many);
+    pool_destroy(s->one);
+}
+
 /* ---- the ground ------------------------------------------------------------------------------- */
 
 Status speed_make_ground(Speed *s)
