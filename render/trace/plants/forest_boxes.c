@@ -40,33 +40,44 @@ static double box_along(const ShapeScene *shape, const double along[3])
     return reach;
 }
 
+/* Of all levels of its shape, without its sway. reach: of a shape along a vector of its axes. */
+static void bounds_by(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant,
+                      double (*reach)(const ShapeScene *, const double[3]))
+{
+    double m[9];
+    plant_transform(m, plant, NULL);
+    for (int c = 0; c < 3; c++) low_m[c] = INFINITY, high_m[c] = -INFINITY;
+    for (int l = 0; l < plant_levels; l++) {
+        const ShapeScene *level = &list->forest->shape[plant->kind][l];
+        if (!level->scene) continue;
+        for (int c = 0; c < 3; c++) {
+            const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
+            const double before = -reach(level, back), after = reach(level, along);
+            low_m[c] = before < low_m[c] ? before : low_m[c]; /* not fmin, which compiles to a call */
+            high_m[c] = after > high_m[c] ? after : high_m[c];
+        }
+    }
+    for (int c = 0; c < 3; c++) /* of a kind without quads */
+        if (!(low_m[c] <= high_m[c])) low_m[c] = high_m[c] = 0;
+}
+
+void plant_bounds(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant)
+{
+    bounds_by(low_m, high_m, list, plant, reach_along);
+}
+
 /* Tight boxes cost as much as a ray each: worth it for those that stand for many frames. */
 void plant_box(const struct RTCBoundsFunctionArguments *a)
 {
     static const double room_m = 0.02; /* of a float 16 km from the origin, twenty times */
     const PlantList    *list = a->geometryUserPtr;
     const Plant        *plant = &list->plant[a->primID];
-    const ShapeScene   *level[plant_levels] = {&list->forest->shape[plant->kind][0],
-                                               &list->forest->shape[plant->kind][1]};
-    const double        swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
-    double              m[9], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    float              *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
-    plant_transform(m, plant, NULL);
-    double (*const reach)(const ShapeScene *, const double[3]) = list->frame ? box_along : reach_along;
-    for (int l = 0; l < plant_levels; l++) {
-        if (!level[l]->scene) continue;
-        for (int c = 0; c < 3; c++) {
-            const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
-            const double before = -reach(level[l], back) - room_m - swing_m,
-                         after = reach(level[l], along) + room_m + swing_m;
-            low[c] = before < low[c] ? before : low[c]; /* not fmin, which compiles to a call */
-            high[c] = after > high[c] ? after : high[c];
-        }
-    }
-    for (int c = 0; c < 3; c++) /* of a kind without quads */
-        if (!(low[c] <= high[c])) low[c] = high[c] = 0;
+    const double swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
+    float       *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
+    double       low[3], high[3];
+    bounds_by(low, high, list, plant, list->frame ? box_along : reach_along);
     for (int c = 0; c < 3; c++) {
-        bound[0][c] = (float)((double)plant->p_m[c] + low[c]);
-        bound[1][c] = (float)((double)plant->p_m[c] + high[c]);
+        bound[0][c] = (float)((double)plant->p_m[c] + low[c] - room_m - swing_m);
+        bound[1][c] = (float)((double)plant->p_m[c] + high[c] + room_m + swing_m);
     }
 }

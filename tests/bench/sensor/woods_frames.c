@@ -23,7 +23,7 @@ static const struct {
                    {"300 m up, 10 degrees down", 300, 10, 40},
                    {"300 m up, 8 down, 6 wide", 300, 8, 6},
                    {"1000 m up, 20 degrees down", 1000, 20, 40}};
-static const char *const detail_name[details] = {"full detail", "two levels"};
+static const char *const detail_name[details] = {"full detail", "tables"};
 
 static const unsigned all_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR | 1u << BAND_RADAR;
 
@@ -113,7 +113,7 @@ static Status make_woods(WoodsBench *w)
 
 static Status make_forest(WoodsBench *w, int detail)
 {
-    const ForestConfig config = {.leaves = true, .level1_px = detail ? w->level1_px : 0};
+    const ForestConfig config = {.leaves = true, .tables = detail == 1};
     World             *world = &w->scene.world;
     const double       start_s = wall_clock_s();
     bench_progress(w->bench, "trees of boxes");
