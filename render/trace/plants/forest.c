@@ -54,6 +54,7 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
     for (int c = 0; c < 3; c++) {
         out->centre[c] = 0.5 * ((double)shape->low[c] + (double)shape->high[c]);
         out->half[c] = 0.5 * ((double)shape->high[c] - (double)shape->low[c]) + 1e-4;
+        out->most = fmax(out->most, fabs(out->centre[c]) + out->half[c]);
     }
     if (quads == 0) return STATUS_OK;
     find_reach(out, quads);
@@ -89,6 +90,8 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
 Status plant_list_commit(PlantList *list, const Forest *forest, bool quick)
 {
     if (list->count == 0) return STATUS_OK;
+    if (!list->frame && forest->config.tables && !(list->bounds = malloc((size_t)list->count * sizeof *list->bounds)))
+        return STATUS_NO_MEMORY;
     RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_USER);
     if (!geometry) return STATUS_NO_MEMORY;
     list->scene = rtcNewScene(forest->device);
@@ -113,7 +116,8 @@ Status plant_list_commit(PlantList *list, const Forest *forest, bool quick)
 void plant_list_close(PlantList *list)
 {
     if (list->scene) rtcReleaseScene(list->scene);
-    list->scene = NULL;
+    free(list->bounds);
+    list->scene = NULL, list->bounds = NULL;
 }
 
 /* ---- the forest ------------------------------------------------------------------------------- */

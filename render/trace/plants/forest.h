@@ -42,7 +42,7 @@ typedef struct ForestFrame {
     const Forest *forest;
     double        eye_enu[3];  /* level of detail and low plants are by the distance from here */
     double        per_rad;     /* pixels a radian */
-    double        ray_px;      /* width of what a ray of a pixel stands for: 1, of several a pixel less */
+    double        ray_px;      /* width of what a ray stands for: 1, of several a pixel less; 0: no tables are used */
     int           columns;     /* of first hits: of a picture, in rows; 0: no order. A hint for speed alone */
     double        low_reach_m; /* low plants stand within this of the eye; 0: none */
     double        t_s;         /* exercise time, for sway */

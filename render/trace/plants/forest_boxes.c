@@ -1,14 +1,19 @@
 /* render/trace/plants/forest_boxes.c: the box about a standing plant, for Embree's tree over all of them. */
 #include "render/trace/plants/forest_private.h"
 
-/* The azimuth of the table at or before that of a vector. An arctangent within 0.005 rad, a twentieth of the table's
- * step, leaves it within one of that; which side of it the vector is on says the rest. */
-static int azimuth_before(const double (*azimuth)[2], double x, double y)
+double plant_rough_angle(double x, double y)
 {
     const double wide = fabs(x), high = fabs(y), most = wide > high ? wide : high, least = wide > high ? high : wide;
     const double a = most > 0 ? least / most : 0, near_rad = a * (0.9724 - 0.1919 * a * a);
     const double quarter = wide > high ? near_rad : 0.5 * pi_rad - near_rad, half = x < 0 ? pi_rad - quarter : quarter;
-    const double turn = y < 0 ? 2 * pi_rad - half : half;
+    return most > 0 ? (y < 0 ? -half : half) : 0;
+}
+
+/* The azimuth of the table at or before that of a vector. A rough angle is off by a twentieth of the table's step, so
+ * that it leaves it within one of that; which side of it the vector is on says the rest. */
+static int azimuth_before(const double (*azimuth)[2], double x, double y)
+{
+    const double angle = plant_rough_angle(x, y), turn = angle < 0 ? angle + 2 * pi_rad : angle;
     int          k = (int)(turn * (shape_azimuths / (2 * pi_rad))) % shape_azimuths;
     if (azimuth[k][0] * y - azimuth[k][1] * x < 0) k = (k + shape_azimuths - 1) % shape_azimuths;
     else if (azimuth[k + 1][1] * x - azimuth[k + 1][0] * y < 0) k = (k + 1) % shape_azimuths;
@@ -61,9 +66,24 @@ static void bounds_by(double low_m[3], double high_m[3], const PlantList *list, 
         if (!(low_m[c] <= high_m[c])) low_m[c] = high_m[c] = 0;
 }
 
-void plant_bounds(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant)
+double plant_bounds_unit_m(const PlantList *list, const Plant *plant)
 {
-    bounds_by(low_m, high_m, list, plant, reach_along);
+    static const double per = 1.0 / 120;
+    const double        height_m = plant_height_m(plant), wide = plant->width > 128 ? plant->width / 128.0 : 1;
+    return list->forest->shape[plant->kind][0].most * per * wide * height_m;
+}
+
+/* The box in whole units, outwards, which are kept. Lean adds less to a coordinate than the units have room for. */
+static void keep_bounds(double low_m[3], double high_m[3], const PlantList *list, uint32_t place)
+{
+    const double unit_m = plant_bounds_unit_m(list, &list->plant[place]);
+    int8_t      *kept = list->bounds[place];
+    for (int c = 0; c < 3; c++) {
+        kept[c] = (int8_t)clamp(floor(low_m[c] / unit_m), -127, 127);
+        kept[3 + c] = (int8_t)clamp(ceil(high_m[c] / unit_m), -127, 127);
+        low_m[c] = kept[c] * unit_m < low_m[c] ? kept[c] * unit_m : low_m[c];
+        high_m[c] = kept[3 + c] * unit_m > high_m[c] ? kept[3 + c] * unit_m : high_m[c];
+    }
 }
 
 /* Tight boxes cost as much as a ray each: worth it for those that stand for many frames. */
@@ -76,6 +96,7 @@ void plant_box(const struct RTCBoundsFunctionArguments *a)
     float       *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
     double       low[3], high[3];
     bounds_by(low, high, list, plant, list->frame ? box_along : reach_along);
+    if (list->bounds) keep_bounds(low, high, list, a->primID);
     for (int c = 0; c < 3; c++) {
         bound[0][c] = (float)((double)plant->p_m[c] + low[c] - room_m - swing_m);
         bound[1][c] = (float)((double)plant->p_m[c] + high[c] + room_m + swing_m);

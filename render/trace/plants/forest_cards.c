@@ -27,8 +27,8 @@ void card_make(Card *card, const CardRays *rays, const PlantList *list, const Pl
     const ForestFrame *frame = rays->frame;
     const uint32_t     place = (uint32_t)(plant - list->plant);
     PlantTable        *table = plant->kind < PLANT_STANDING ? list->forest->table[plant->kind] : NULL;
-    double             axis[3][3], scale[2], from[3], to[3], d[3], low_m[3], high_m[3], m[3][3];
-    card->plant = plant, card->table = table;
+    double             axis[3][3], scale[2], from[3], to[3], d[3], m[3][3];
+    card->table = table;
     for (int c = 0; c < 3; c++) from[c] = frame->eye_enu[c] - (list->origin_enu[c] + (double)plant->p_m[c]);
     const double away_m = v3_length(from), height_m = plant_height_m(plant);
     card->real = !table || height_m * frame->per_rad >= least_real_px(place) * away_m;
@@ -63,11 +63,12 @@ void card_make(Card *card, const CardRays *rays, const PlantList *list, const Pl
     }
     double at[3] = {-middle[0], half - half * middle[1], half - half * middle[2]};
     if (!rays->way_enu) at[0] += v3_dot(n, from), at[1] += v3_dot(u, from), at[2] += v3_dot(v, from);
-    plant_bounds(low_m, high_m, list, plant);
+    const double  unit_m = plant_bounds_unit_m(list, plant);
+    const int8_t *box = list->bounds[place];
     for (int c = 0; c < 3; c++) {
         card->at[c] = (float)at[c];
         card->from[c] = rays->way_enu ? plant->p_m[c] : (float)from[c];
-        card->low[c] = (float)low_m[c], card->high[c] = (float)high_m[c];
+        card->low[c] = (float)(box[c] * unit_m), card->high[c] = (float)(box[3 + c] * unit_m);
     }
 }
 

@@ -4,12 +4,13 @@
 
 static const double past = 1 + 1e-6; /* a float's distance may be that much short */
 
-enum { cards_kept = 512 };
+enum { cards_kept = 1024 };
 
 /* What rays of a block have of the plants that they meet. */
 typedef struct Memory {
-    Card       card[cards_kept];
-    PlantFrame frame[frames_kept];
+    const Plant *of[cards_kept]; /* NULL: none yet */
+    Card         card[cards_kept];
+    PlantFrame   frame[frames_kept];
 } Memory;
 
 typedef struct Packet {
@@ -50,9 +51,11 @@ static unsigned lanes_of(const Fields *f)
 static const Card *card_of(Packet *p, const PlantList *list, uint32_t place, unsigned lanes)
 {
     const Plant *plant = &list->plant[place];
-    Card        *card = &p->kept->card[(uintptr_t)plant / sizeof *plant % cards_kept];
+    const size_t slot = (uintptr_t)plant / sizeof *plant % cards_kept;
+    Card        *card = &p->kept->card[slot];
     if (!(p->by_table & lanes)) return NULL;
-    if (card->plant != plant) card_make(card, &p->rays, list, plant);
+    if (p->kept->of[slot] != plant) card_make(card, &p->rays, list, plant);
+    p->kept->of[slot] = plant;
     return card->real ? NULL : card;
 }
 
@@ -126,7 +129,7 @@ static void open_packets(Packet *p, Memory *kept, const ForestFrame *frame, cons
 {
     p->rays.frame = frame, p->rays.way_enu = way_enu, p->rays.bend_per_m = 0;
     p->kept = kept, p->entered = 0;
-    for (int k = 0; k < cards_kept; k++) kept->card[k].plant = NULL;
+    memset(kept->of, 0, sizeof kept->of);
     for (int k = 0; k < frames_kept; k++) kept->frame[k].plant = NULL;
 }
 
@@ -153,7 +156,7 @@ static bool open_ray(Packet *p, int lane, const double *const o_enu[3], const do
     const double *way = p->rays.way_enu;
     const bool    alike = !way ? is_eye(frame, ray)
                                : ray->d_enu[0] == way[0] && ray->d_enu[1] == way[1] && ray->d_enu[2] == way[2];
-    if (alike && !real && frame->forest->config.tables) p->by_table |= 1u << lane;
+    if (alike && !real && frame->forest->config.tables && frame->ray_px > 0) p->by_table |= 1u << lane;
     return v3_dot(ray->d_enu, ray->d_enu) < 2 &&
            fabs(ray->o_enu[0]) + fabs(ray->o_enu[1]) + fabs(ray->o_enu[2]) < most_m;
 }
@@ -312,6 +315,10 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
             if (!lists[k]) continue;
             if (frame->bend_per_m > 0) first_bent(&p, lists[k], &bounds[k], lanes);
             else first_straight(&p, lists[k], lanes);
+        }
+        for (unsigned left = lanes & p.table_hit; left; left &= left - 1) { /* they lie far apart in memory */
+            const ForestHit *met = &p.ray[__builtin_ctz(left)].hit;
+            __builtin_prefetch(&frame->forest->shape[lists[0]->plant[met->place].kind][0].shape->quad[met->quad]);
         }
         for (int l = 0; l < some; l++) {
             ListRay *ray = &p.ray[l];

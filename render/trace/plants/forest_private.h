@@ -18,6 +18,7 @@ typedef struct ShapeScene {
     const LeafOutline *outline;            /* [plant_outlines] */
     double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
     const double (*azimuth)[2];            /* unit vectors of azimuths, [shape_azimuths + 1] of the forest */
+    double most;                     /* a coordinate of its box has, either way */
     double reach[shape_azimuths + 1];      /* how far it reaches towards azimuths from x to y, from its axis; the last
                                             * is the first */
 } ShapeScene;
@@ -31,6 +32,8 @@ typedef struct PlantList {
     int                  count;
     double               origin_enu[3];
     RTCScene             scene; /* NULL: none */
+    int8_t (*bounds)[6]; /* [count] box of each about its foot, without sway: lowest and highest, in units of
+                          * plant_bounds_unit_m; NULL: not kept */
 } PlantList;
 
 typedef struct LowSquares LowSquares; /* low_plants.c */
@@ -103,9 +106,10 @@ bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3
 /* Its first quad, and how far; o: about the middle of the prototype's box. False: none. */
 bool shape_first(uint32_t *quad, double *at_m, const ShapeScene *shape, const double o[3], const double d[3]);
 
-/* The box within which every hit on a plant without sway lies, about its foot, and the bounds that Embree has: wider by
- * more than its arithmetic errs (forest_boxes.c). */
-void plant_bounds(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant);
+/* Unit of PlantList.bounds of a plant. */
+double plant_bounds_unit_m(const PlantList *list, const Plant *plant);
+/* Angle of a vector from x towards y, within 0.005 rad; 0, 0: 0. */
+double plant_rough_angle(double x, double y);
 
 /* ---- eight rays against a plant's table (forest_cards.c) ---------------------------------------- */
 
@@ -123,7 +127,6 @@ typedef struct CardRays {
 /* A plant by its table: what is met on the way from the eye to its middle, or against the way of the rays. Metres of ENU
  * to units of the table; the box outside which nothing counts. */
 typedef struct Card {
-    const Plant *plant; /* NULL: not known */
     bool         real;  /* it is met itself */
     PlantTable  *table;
     int          way, level;

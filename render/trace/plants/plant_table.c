@@ -25,9 +25,9 @@ static void place_way(TableWay *out, const struct ShapeScene *shape, int way)
 
 int plant_table_way(const double d[3])
 {
-    const double up_rad = atan2(d[2], sqrt(d[0] * d[0] + d[1] * d[1]));
+    const double up_rad = plant_rough_angle(sqrt(d[0] * d[0] + d[1] * d[1]), d[2]);
     if (!(up_rad <= highest_rad)) return -1;
-    const double turn_rad = atan2(d[1], d[0]); /* 0, 0: any will do */
+    const double turn_rad = plant_rough_angle(d[0], d[1]);
     const int    row = (int)((highest_rad - up_rad) / row_rad + 0.5);
     const int    column = (int)floor(turn_rad * (table_azimuths / (2 * pi_rad)));
     return (row < table_elevations ? row : table_elevations - 1) * table_azimuths + (column & (table_azimuths - 1));

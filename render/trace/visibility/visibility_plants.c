@@ -77,6 +77,7 @@ static void plants_finish(Hits *hits, const int *list, int count, const void *fo
         const double     o[3] = {block->o_enu[0][i], block->o_enu[1][i], block->o_enu[2][i] - drop_m};
         const double     d[3] = {block->d_enu[0][i], block->d_enu[1][i], block->d_enu[2][i]};
         ForestSurface    at;
+        block->counters->hits_by_table += hit->by_table;
         forest_surface(&at, plants, hit, o, d, range_m, (float)(range_m / plants->per_rad));
         visibility_store_normals(hits, i, at.n_geo, at.n_enu, d);
         hits->kind[i] = hit_plant;
