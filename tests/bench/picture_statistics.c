@@ -12,7 +12,8 @@ Estimate group_estimate(GroupFigure *figure, const void *user, int groups)
         const double off = figure(user, k) - all.value; /* from the whole, against cancellation */
         sum += off, square += off * off;
     }
-    return (Estimate){all.value, sqrt(fmax(0, (square - sum * sum / groups) * (groups - 1) / groups))};
+    const double scatter = (square - sum * sum / groups) * (groups - 1) / groups;
+    return (Estimate){all.value, scatter < 0 ? 0 : sqrt(scatter)}; /* rounding may take it below; NaN stays */
 }
 
 void group_sums(double *sums, const double *of, int groups, int count, int without)
@@ -136,8 +137,8 @@ int double_window(float *contrast, const DoubleWindow *w, const float *plane, co
     const int places = places_a_row(w, width) * places_a_row(w, height);
     for (int k = 0; k < places && contrast; k++) {
         const size_t centre = double_window_centre(w, width, k);
-        contrast[k] = mask && is_masked(mask, width, centre, w->outer) ? NAN
-                                                                       : (float)contrast_at(w, plane, width, centre);
+        contrast[k] =
+            mask && is_masked(mask, width, centre, w->outer) ? NAN : (float)contrast_at(w, plane, width, centre);
     }
     return places;
 }

@@ -45,8 +45,8 @@ double tile_mean(const PlaneTile *tile, const float *a);
 double tile_product(const PlaneTile *tile, int block, const float *a, const float *b, const float *c, const float *d);
 
 enum { most_lags = 24 };
-/* lag[k], k = 0 .. lags - 1: mean of a(p) b(p + k) over pairs of pixels of the tile k apart in a row and those k apart in
- * a column, each plane less its mean over the tile. lag[0] of a with itself is its variance. */
+/* lag[k], k = 0 .. lags - 1: mean of a(p) b(p + k) over pairs of pixels of the tile k apart in a row and those k apart
+ * in a column, each plane less its mean over the tile. lag[0] of a with itself is its variance. */
 void tile_lags(double *lag, int lags, const PlaneTile *tile, const float *a, const float *b);
 /* The distance at which it has fallen to 1/e of lag[0], by linear interpolation; NaN: not within the lags. */
 double correlation_length(const double *lag, int lags);
@@ -59,9 +59,9 @@ typedef struct DoubleWindow {
 } DoubleWindow;
 
 /* The contrast of each place: |mean of the inner square - mean of the ring| over the standard deviation of the ring,
- * which is the outer square without the guard; 0 where both are 0, INFINITY where only the latter is. Places are those whose
- * outer square lies within the plane, row by row; NaN: mask is not 0 somewhere in it. mask: may be NULL. contrast: room
- * for all places, or NULL. Returns their number. */
+ * which is the outer square without the guard; 0 where both are 0, INFINITY where only the latter is. Places are those
+ * whose outer square lies within the plane, row by row; NaN: mask is not 0 somewhere in it. mask: may be NULL.
+ * contrast: room for all places, or NULL. Returns their number. */
 int double_window(float *contrast, const DoubleWindow *window, const float *plane, const uint8_t *mask, int width,
                   int height);
 /* Where each place is: the number of its centre's pixel. */
@@ -71,7 +71,8 @@ size_t double_window_centre(const DoubleWindow *window, int width, int place);
 
 enum { most_features = 12 };
 
-/* Logistic regression on standardized features, by Newton's method with a ridge of 1 on all weights but the constant. */
+/* Logistic regression on standardized features, by Newton's method with a ridge of 1 on all weights but the constant.
+ */
 typedef struct Logistic {
     int    features;
     double mean[most_features], per_spread[most_features], weight[most_features + 1]; /* the last: constant */
@@ -90,8 +91,8 @@ double logistic_score(const Logistic *fit, const double *feature); /* log odds *
 /* Scores of each sample by a fit that has not seen its fold (0 or 1). */
 void logistic_cross(double *score, const LabelledSamples *samples);
 
-/* Area under the receiver operating characteristic: the share of pairs of a 1 and a 0 in which the 1 scores higher, equal
- * ones counted as half. Samples of group `without` are left out; group NULL: none. NaN: a label is missing. */
+/* Area under the receiver operating characteristic: the share of pairs of a 1 and a 0 in which the 1 scores higher,
+ * equal ones counted as half. Samples of group `without` are left out; group NULL: none. NaN: a label is missing. */
 double auc_of(const double *score, const uint8_t *label, const int *group, int count, int without);
 
 #endif

@@ -34,8 +34,8 @@ static void a_mean_has_its_usual_standard_error(void **state)
 
 /* Blocks of 4 x 4 px by turns 0.5 above and below, plus noise of 1 a pixel, independent in all four pictures. The noise
  * of a block's mean is 1 / 4, so the mean of the squared difference is 0.25 + 2 / 16 = 0.375; of products of two
- * independent differences 0.25. A block's square scatters by sqrt(4 / 4 / 8 + 2 / 64) = 0.4 (s^2 = 1 / 4, noise 1 / 8), a
- * product by less, the mean of 576 blocks by 0.017: four of these allowed. */
+ * independent differences 0.25. A block's square scatters by sqrt(4 / 4 / 8 + 2 / 64) = 0.4 (s^2 = 1 / 4, noise 1 / 8),
+ * a product by less, the mean of 576 blocks by 0.017: four of these allowed. */
 static void products_of_differences_are_without_noise(void **state)
 {
     PlaneTile tile;
@@ -75,8 +75,8 @@ static void tiles_are_whole_and_apart(void **state)
 }
 
 /* White noise that is averaged over squares of w x w px has a correlation of 1 - k / w at distance k along a row or
- * column, so it falls to 1/e at w (1 - 1/e): 5.057 px for w = 8, exactly, since what is interpolated is a straight line.
- * Some (96 / 8)^2 = 144 independent squares: the length scatters by some 0.4 px. */
+ * column, so it falls to 1/e at w (1 - 1/e): 5.057 px for w = 8, exactly, since what is interpolated is a straight
+ * line. Some (96 / 8)^2 = 144 independent squares: the length scatters by some 0.4 px. */
 static void a_blurred_field_has_its_correlation_length(void **state)
 {
     enum { w = 8, more = side + w };
@@ -109,8 +109,8 @@ static void a_blurred_field_has_its_correlation_length(void **state)
 }
 
 /* A cosine along rows, 6 whole periods of 16 px, constant along columns: at distance k the columns give its variance
- * 1/2, the rows cos(2 pi k / 16) / 2 and a little for the pairs that the edge leaves out: with k = 8 pairs over 88 px, the
- * mean of cos(a) cos(a + pi) = -cos^2(a) over 5.5 periods is -1/2. Together lag[8] = 0. */
+ * 1/2, the rows cos(2 pi k / 16) / 2 and a little for the pairs that the edge leaves out: with k = 8 pairs over 88 px,
+ * the mean of cos(a) cos(a + pi) = -cos^2(a) over 5.5 periods is -1/2. Together lag[8] = 0. */
 static void lags_go_along_rows_and_columns(void **state)
 {
     double    lag[most_lags];
@@ -127,10 +127,10 @@ static void lags_go_along_rows_and_columns(void **state)
     CHECK(isnan(correlation_length((const double[]){0, 0, 0}, 3)));
 }
 
-/* Columns by turns 1 and -1 have mean 0 and standard deviation 1 in a ring of whole pairs, nearly so in this one: outer 9,
- * guard 5. About column x: the outer square has 9 columns, 5 of the centre's sign; the guard 5, 3 of it. The ring's sum is
- * 9 (5 - 4) - 5 (3 - 2) = 4 of 81 - 25 = 56 px: mean 1 / 14 of the centre's sign, variance 1 - 1 / 196.
- * An inner square of 3 x 3 that is 5 everywhere, centre's sign +: contrast (5 - 1 / 14) / sqrt(195 / 196) = 4.9412; of
+/* Columns by turns 1 and -1 have mean 0 and standard deviation 1 in a ring of whole pairs, nearly so in this one: outer
+ * 9, guard 5. About column x: the outer square has 9 columns, 5 of the centre's sign; the guard 5, 3 of it. The ring's
+ * sum is 9 (5 - 4) - 5 (3 - 2) = 4 of 81 - 25 = 56 px: mean 1 / 14 of the centre's sign, variance 1 - 1 / 196. An inner
+ * square of 3 x 3 that is 5 everywhere, centre's sign +: contrast (5 - 1 / 14) / sqrt(195 / 196) = 4.9412; of
  * -: 5 + 1 / 14: 5.0844. */
 static void a_double_window_finds_a_known_contrast(void **state)
 {
@@ -167,13 +167,12 @@ static void a_double_window_finds_a_known_contrast(void **state)
     /* steps of 3: (96 - 9) / 3 + 1 = 30 a side; nothing but a constant: no contrast; a plane too small: no place */
     const DoubleWindow steps = {3, 5, 9, 3};
     for (int i = 0; i < side * side; i++) plane[0][i] = 2;
-    CHECK(double_window(contrast, &steps, plane[0], NULL, side, side) == 900 && contrast[0] == 0 &&
-          contrast[899] == 0);
+    CHECK(double_window(contrast, &steps, plane[0], NULL, side, side) == 900 && contrast[0] == 0 && contrast[899] == 0);
     CHECK(double_window(NULL, &window, plane[0], NULL, 8, side) == 0);
 }
 
-/* Pairs by hand: ones score 3, 1, 1; zeros 2, 1. Of 6 pairs the ones win 3>2, 3>1: 2, tie 1=1 twice: 1, lose the rest: 3 of
- * 6. */
+/* Pairs by hand: ones score 3, 1, 1; zeros 2, 1. Of 6 pairs the ones win 3>2, 3>1: 2, tie 1=1 twice: 1, lose the rest:
+ * 3 of 6. */
 static void an_auc_counts_pairs(void **state)
 {
     static const double  score[] = {3, 1, 1, 2, 1};
@@ -186,10 +185,10 @@ static void an_auc_counts_pairs(void **state)
     CHECK(isnan(auc_of(score, label, NULL, 3, -1)));
 }
 
-/* Two classes of normal features, apart by 2 spreads along (1, 1) / sqrt(2), a third feature that says nothing. The best
- * linear score has an AUC of Phi(2 / sqrt(2)) = Phi(1.41421) = 0.92135 (Green and Swets 1966: Phi(d' / sqrt 2)), and by
- * Hanley and McNeil (1982) a standard error of 0.0062 for 1000 of each; the weights are in the ratio 1 : 1 : 0. Without
- * any difference the AUC is 0.5 with 0.013. */
+/* Two classes of normal features, apart by 2 spreads along (1, 1) / sqrt(2), a third feature that says nothing. The
+ * best linear score has an AUC of Phi(2 / sqrt(2)) = Phi(1.41421) = 0.92135 (Green and Swets 1966: Phi(d' / sqrt 2)),
+ * and by Hanley and McNeil (1982) a standard error of 0.0062 for 1000 of each; the weights are in the ratio 1 : 1 : 0.
+ * Without any difference the AUC is 0.5 with 0.013. */
 static void a_classifier_reaches_the_best_auc(void **state)
 {
     enum { n = 2000 };
