@@ -1,14 +1,15 @@
-/* tests/bench/sensor/woods_errors.c: how the pictures of far plants differ from full detail, in a piece about the middle
- * of each view.
+/* tests/bench/sensor/woods_errors.c: how the pictures of far plants differ from full detail, in a piece about the
+ * middle of each view.
  *
- * Both are rendered with one ray a pixel, with 16 and with 36. The grids of the latter two have no ray in common, so with
- * full detail F and the judged representation T the mean of (T16 - F16)(T36 - F36) is the squared difference of what the
- * two are with any number of rays, without the noise of either: the structural error. In the same way (X - F16)(X - F36)
- * is the squared error of one ray X, and the mean product of T16 and T36 at a distance the true correlation. */
+ * Both are rendered with one ray a pixel, with 16 and with 36. The grids of the latter two have no ray in common, so
+ * with full detail F and the judged representation T the mean of (T16 - F16)(T36 - F36) is the squared difference of
+ * what the two are with any number of rays, without the noise of either: the structural error. In the same way (X -
+ * F16)(X - F36) is the squared error of one ray X, and the mean product of T16 and T36 at a distance the true
+ * correlation. */
 #include "tests/bench/sensor/woods_private.h"
 
 enum { sets = 3 /* of rays: one, 16, 36 */, tiles_most = 24, lags_most = most_lags };
-static const int    set_samples[sets] = {1, 4, 6};
+static const int set_samples[sets] = {1, 4, 6};
 /* The piece, of the picture's sides, and its tiles; quick and full. */
 static const double piece_share[2] = {0.2, 0.4};
 static const int    tile_side[2] = {16, 48};
@@ -54,14 +55,22 @@ static double figure_of(const void *user, int without)
     const double  tiles = p->tiles - (without >= 0), per_mean = 100 * tiles / s[SUM_FULL];
     const double *full = s + SUM_LAGS, *judged = full + lags_most;
     switch (p->figure) {
-    case FIGURE_BIAS: return 100 * (s[SUM_JUDGED] / s[SUM_FULL] - 1);
-    case FIGURE_ONE_4: return sqrt(s[SUM_ONE_4 + 1] / s[SUM_ONE_4]);
-    case FIGURE_ONE_8: return sqrt(s[SUM_ONE_8 + 1] / s[SUM_ONE_8]);
-    case FIGURE_STRUCTURE_1: return signed_root(s[SUM_STRUCTURE_1] / tiles) * per_mean;
-    case FIGURE_STRUCTURE_4: return signed_root(s[SUM_STRUCTURE_4] / tiles) * per_mean;
-    case FIGURE_STRUCTURE_8: return signed_root(s[SUM_STRUCTURE_8] / tiles) * per_mean;
-    case FIGURE_CONTRAST_ONE: return 100 * (sqrt(s[SUM_CONTRAST + 1] / s[SUM_CONTRAST]) - 1);
-    case FIGURE_CONTRAST: return 100 * (sqrt(judged[0] / full[0]) - 1);
+    case FIGURE_BIAS:
+        return 100 * (s[SUM_JUDGED] / s[SUM_FULL] - 1);
+    case FIGURE_ONE_4:
+        return sqrt(s[SUM_ONE_4 + 1] / s[SUM_ONE_4]);
+    case FIGURE_ONE_8:
+        return sqrt(s[SUM_ONE_8 + 1] / s[SUM_ONE_8]);
+    case FIGURE_STRUCTURE_1:
+        return signed_root(s[SUM_STRUCTURE_1] / tiles) * per_mean;
+    case FIGURE_STRUCTURE_4:
+        return signed_root(s[SUM_STRUCTURE_4] / tiles) * per_mean;
+    case FIGURE_STRUCTURE_8:
+        return signed_root(s[SUM_STRUCTURE_8] / tiles) * per_mean;
+    case FIGURE_CONTRAST_ONE:
+        return 100 * (sqrt(s[SUM_CONTRAST + 1] / s[SUM_CONTRAST]) - 1);
+    case FIGURE_CONTRAST:
+        return 100 * (sqrt(judged[0] / full[0]) - 1);
     case FIGURE_LENGTH:
         return 100 * (correlation_length(judged, p->lags) / correlation_length(full, p->lags) - 1);
     }
@@ -140,10 +149,9 @@ static void judge_one_ray(PlaneRows *r)
     for (int k = 0; k < 2; k++) {
         const int    sum = k ? SUM_ONE_8 : SUM_ONE_4;
         const double full = percent(r, sum), judged = percent(r, sum + 1);
-        int          at = snprintf(text, sizeof text, "rms over that in full detail, reference's noise out; %.3g / %.3g %%",
-                                   judged, full);
-        if (r->k > 0)
-            snprintf(text + at, sizeof text - (size_t)at, " = %.2g / %.2g K", judged * r->k, full * r->k);
+        int at = snprintf(text, sizeof text, "rms over that in full detail, reference's noise out; %.3g / %.3g %%",
+                          judged, full);
+        if (r->k > 0) snprintf(text + at, sizeof text - (size_t)at, " = %.2g / %.2g K", judged * r->k, full * r->k);
         judge(r, k ? "one ray, blocks of 8 px" : "one ray, blocks of 4 px",
               estimate(r, k ? FIGURE_ONE_8 : FIGURE_ONE_4), (WoodsLimit){1, "x"}, text);
     }
@@ -202,16 +210,17 @@ static Status judge_planes(WoodsBench *w, int v, const Pieces *p)
     return STATUS_OK;
 }
 
-/* Rows of the pixel's error in every plane but radar's, which is of few pixels: one ray beside 16, and the same 16 rays in
- * both. */
+/* Rows of the pixel's error in every plane but radar's, which is of few pixels: one ray beside 16, and the same 16 rays
+ * in both. */
 static void say_planes(WoodsBench *w, int v, const Pieces *p)
 {
     for (int k = 0; k < woods_details + 1; k++)
         for (int plane = 0; plane < picture_radar; plane++) {
             const bool   paired = k == woods_details;
-            const float *got = paired ? plane_of(p, 1, 1, plane) : plane_of(p, k, 0, plane), *want = plane_of(p, 0, 1, plane);
-            double       square[2] = {0}, mean[2] = {0};
-            char         what[what_size], text[160];
+            const float *got = paired ? plane_of(p, 1, 1, plane) : plane_of(p, k, 0, plane),
+                        *want = plane_of(p, 0, 1, plane);
+            double square[2] = {0}, mean[2] = {0};
+            char   what[what_size], text[160];
             if (!got || !want) continue;
             for (int t = 0; t < p->tiles; t++) {
                 square[0] += tile_product(&p->tile[t], 1, got, want, got, want);

@@ -1,10 +1,11 @@
-/* tests/bench/sensor/woods_flight.c: a flight of 20 s at 250 m/s down to an impact among the plants: what a plant's change
- * of representation adds to the change from frame to frame, and whether some frames take longer than others.
+/* tests/bench/sensor/woods_flight.c: a flight of 20 s at 250 m/s down to an impact among the plants: what a plant's
+ * change of representation adds to the change from frame to frame, and whether some frames take longer than others.
  *
- * Twice a second two frames are rendered, 1/25 s apart, each in full detail (F, then F') and in the representation that is
- * judged (T, T'); sun, plants and ground stand still. A plant that reaches its full detail in between changes by F' - T,
- * where full detail changes by F' - F. Few do in one step; so all pixels are taken of plants that are nearly as high in
- * the picture as those that change. The share of their change that full detail does not have is 1 - <(F' - F)^2> /
+ * Twice a second two frames are rendered, 1/25 s apart, each in full detail (F, then F') and in the representation that
+ * is judged (T, T'); sun, plants and ground stand still. A plant that reaches its full detail in between changes by F'
+ * - T, where full detail changes by F' - F. Few do in one step; so all pixels are taken of plants that are nearly as
+ * high in the picture as those that change. The share of their change that full detail does not have is 1 - <(F' -
+ * F)^2> /
  * <(F' - T)^2>: 0: none; 50 %: the jump is as large as the change (motion and sampling) that full detail has anyway. */
 #include "tests/bench/sensor/woods_private.h"
 
@@ -15,10 +16,10 @@ static const double nearly = 0.75;                  /* of the height at which pl
 
 /* Columns of a frame's sums: of plants that are about to change and of the whole picture, pixels and blocks. */
 typedef enum FlightSum {
-    CHANGE_FULL,   /* (F' - F)^2 of plants about to change: pixels, blocks */
-    CHANGE_JUDGED = CHANGE_FULL + 2,   /* (F' - T)^2 */
-    ALL_FULL = CHANGE_JUDGED + 2,      /* (F' - F)^2 of all pixels */
-    ALL_JUDGED = ALL_FULL + 2,         /* (T' - T)^2 */
+    CHANGE_FULL,                     /* (F' - F)^2 of plants about to change: pixels, blocks */
+    CHANGE_JUDGED = CHANGE_FULL + 2, /* (F' - T)^2 */
+    ALL_FULL = CHANGE_JUDGED + 2,    /* (F' - F)^2 of all pixels */
+    ALL_JUDGED = ALL_FULL + 2,       /* (T' - T)^2 */
     PIXELS = ALL_JUDGED + 2,
     FLIGHT_SUMS
 } FlightSum;
@@ -139,12 +140,11 @@ static void judge_changes(const Flight *f)
             Change change = {f->sum[b][0], f->frames, CHANGE_FULL + k, true};
             Change all = {f->sum[b][0], f->frames, ALL_FULL + k, false};
             double pixels = 0, frames = 0;
-            for (int n = 0; n < f->frames; n++)
-                pixels += f->sum[b][n][PIXELS], frames += f->sum[b][n][PIXELS] > 0;
+            for (int n = 0; n < f->frames; n++) pixels += f->sum[b][n][PIXELS], frames += f->sum[b][n][PIXELS] > 0;
             snprintf(what, sizeof what, "flight: %s, %s: change of representation, %s", woods_detail[1],
                      woods_plane[woods_band_plane[b]], scale[k]);
-            snprintf(text, sizeof text, "share of the plants' change that full detail has not; %g pixels in %g frames", pixels,
-                     frames);
+            snprintf(text, sizeof text, "share of the plants' change that full detail has not; %g pixels in %g frames",
+                     pixels, frames);
             woods_judge(f->w, what, group_estimate(change_of, &change, f->frames), (WoodsLimit){50, "%"}, text);
             snprintf(what, sizeof what, "flight: %s, %s: change from frame to frame, %s", woods_detail[1],
                      woods_plane[woods_band_plane[b]], scale[k]);

@@ -63,8 +63,8 @@ void woods_say(WoodsBench *w, const char *what, double value, const char *unit);
 void woods_say_memory(WoodsBench *w, const char *what, double limit_mb);
 
 /* The magnitude of a figure beside its limit. Its standard error is said; twice it, and at most half the limit, is
- * allowed beyond the limit, so that noise alone seldom fails a row, and a figure that is hardly known cannot pass by that.
- * limit NaN: none. Quick runs have too few pixels for limits: theirs have none. */
+ * allowed beyond the limit, so that noise alone seldom fails a row, and a figure that is hardly known cannot pass by
+ * that. limit NaN: none. Quick runs have too few pixels for limits: theirs have none. */
 typedef struct WoodsLimit {
     double      limit;
     const char *unit;
@@ -73,8 +73,11 @@ void woods_judge(WoodsBench *w, const char *what, Estimate figure, WoodsLimit li
 
 /* ---- vehicles among the plants: woods_targets.c --------------------------------------------------- */
 
-enum { woods_sites = 150, woods_quick_sites = 20 };
-static inline int woods_sites_used(const WoodsBench *w) { return bench_quick(w->bench) ? woods_quick_sites : woods_sites; }
+enum { woods_sites = 150, woods_quick_sites = 10 };
+static inline int woods_sites_used(const WoodsBench *w)
+{
+    return bench_quick(w->bench) ? woods_quick_sites : woods_sites;
+}
 
 /* Vehicles at random places that a view sees, wherever plants stand there, in place of the bench's twenty. */
 typedef struct WoodsCrowd {

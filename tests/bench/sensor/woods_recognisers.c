@@ -1,6 +1,6 @@
-/* tests/bench/sensor/woods_recognisers.c: what algorithms make of the pictures: false alarms of a double-window contrast
- * detector, and whether a classifier finds vehicles by their surroundings alone, which a shortcut about targets would let
- * it do. One ray a pixel, whole pictures. */
+/* tests/bench/sensor/woods_recognisers.c: what algorithms make of the pictures: false alarms of a double-window
+ * contrast detector, and whether a classifier finds vehicles by their surroundings alone, which a shortcut about
+ * targets would let it do. One ray a pixel, whole pictures. */
 #include "tests/bench/sensor/woods_private.h"
 
 #include <stdlib.h>
@@ -124,7 +124,7 @@ static double variance_of(const Ring *r) { return r->square / r->count - r->sum 
 /* What the near ring differs by from the far one: mean, variance, energy of gradients. */
 static bool features_of(double feature[3], const Picture *p, int plane, const uint8_t *mask, const double box[4])
 {
-    Ring ring[3] = {{0}};
+    Ring      ring[3] = {{0}};
     const int x0 = (int)floor(box[0]) - far_px - 1, y0 = (int)floor(box[1]) - far_px - 1;
     const int x1 = (int)ceil(box[2]) + far_px + 1, y1 = (int)ceil(box[3]) + far_px + 1;
     if (x0 < 0 || y0 < 0 || x1 >= p->width || y1 >= p->height) return false;

@@ -1,5 +1,5 @@
-/* tests/bench/sensor/woods_targets.c: what of vehicles is seen between plants: 150 of them at random places of each view,
- * 1024 rays over each, in full detail and in the representation that is judged. */
+/* tests/bench/sensor/woods_targets.c: what of vehicles is seen between plants: 150 of them at random places of each
+ * view, 1024 rays over each, in full detail and in the representation that is judged. */
 #include "tests/bench/sensor/woods_private.h"
 
 #include "sensor/settings/config.h"
@@ -18,10 +18,10 @@ static TrialPlace site_of(const WoodsBench *w, int v, int k)
 {
     static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}};
     const View                 view = woods_view(w, v);
-    const double half_up = 0.9 * atan(0.5 * view.height / view.focal_px);
-    const double half_across = 0.9 * atan(0.5 * view.width / view.focal_px);
-    const double down = woods_pose[v].down_deg * rad_per_deg, above_m = woods_pose[v].above_m;
-    const double from_m = above_m / tan(down + half_up), middle_m = above_m / tan(down);
+    const double               half_up = 0.9 * atan(0.5 * view.height / view.focal_px);
+    const double               half_across = 0.9 * atan(0.5 * view.width / view.focal_px);
+    const double               down = woods_pose[v].down_deg * rad_per_deg, above_m = woods_pose[v].above_m;
+    const double               from_m = above_m / tan(down + half_up), middle_m = above_m / tan(down);
     const double to_m = down - half_up > 0 ? fmin(2 * middle_m, above_m / tan(down - half_up)) : 2 * middle_m;
     const double reach_m = fmin(to_m, 0.48 * w->north_m - view.p_enu[1]);
     double       u[3];
@@ -64,7 +64,7 @@ typedef struct Sight {
     Snapshot          snapshot;
     ForestFrame       forest[woods_details];
     Visibility       *visibility[woods_details];
-    double            seen[woods_sites][ways][woods_details]; /* share of the rays that meet the vehicle; NaN: none does */
+    double seen[woods_sites][ways][woods_details]; /* share of the rays that meet the vehicle; NaN: none does */
 } Sight;
 
 typedef struct SightScratch {
@@ -170,9 +170,9 @@ static void say_sight(WoodsBench *w, int v, const Sight *s, int way)
 {
     static const char *const name[ways] = {"visible share of vehicles, by its plants alone",
                                            "visible share of vehicles, as in frames"};
-    char       what[what_size], text[200];
-    double     seen[woods_details] = {0}, known = 0, partly = 0;
-    Difference of = {s, way, true};
+    char                     what[what_size], text[200];
+    double                   seen[woods_details] = {0}, known = 0, partly = 0;
+    Difference               of = {s, way, true};
     for (int k = 0; k < s->snapshot.count; k++) {
         const double *share = s->seen[k][way];
         if (isnan(share[0])) continue;
@@ -182,9 +182,11 @@ static void say_sight(WoodsBench *w, int v, const Sight *s, int way)
     const Estimate mean = group_estimate(difference_of, &of, s->snapshot.count);
     of.mean = false;
     snprintf(what, sizeof what, "%s: %s: %s", woods_pose[v].name, woods_detail[1], name[way]);
-    snprintf(text, sizeof text, "rms difference, %g vehicles, 1024 rays each, %g seen in part; mean %.4f / %.4f: %+.2g +- %.1g",
-             known, partly, seen[1] / known, seen[0] / known, mean.value, mean.se);
-    woods_judge(w, what, group_estimate(difference_of, &of, s->snapshot.count), (WoodsLimit){way ? 0.02 : NAN, ""}, text);
+    snprintf(text, sizeof text,
+             "rms difference, %g vehicles, 1024 rays each, %g seen in part; mean %.4f / %.4f: %+.2g +- %.1g", known,
+             partly, seen[1] / known, seen[0] / known, mean.value, mean.se);
+    woods_judge(w, what, group_estimate(difference_of, &of, s->snapshot.count), (WoodsLimit){way ? 0.02 : NAN, ""},
+                text);
 }
 
 /* Straight rays in still air: the difference does not need refraction. */
@@ -198,7 +200,8 @@ static Status open_sight(Sight *s, const WoodsCrowd *crowd, Arena *arena)
     s->view = woods_view(w, crowd->v);
     Status status = entity_table_snapshot(&s->snapshot, crowd->scene.table, crowd->scene.sun_now_s + 0.5, arena);
     for (int d = 0; d < woods_details && status == STATUS_OK; d++) {
-        status = visibility_create(&s->visibility[d], world->tracer, &w->landscape, &world->frame, &s->snapshot, 0, arena);
+        status =
+            visibility_create(&s->visibility[d], world->tracer, &w->landscape, &world->frame, &s->snapshot, 0, arena);
         if (status != STATUS_OK) return status;
         visibility_materials(s->visibility[d], &world->materials);
         status = forest_frame_open(&s->forest[d], w->forest[d], s->view.p_enu, s->view.focal_px,

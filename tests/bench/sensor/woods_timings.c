@@ -33,7 +33,7 @@ static double differs(WoodsBench *w, const WoodsFrame *many)
 static Status time_view(WoodsBench *w, int v)
 {
     const RenderRequest request = woods_request(w, v, 1);
-    const int           rounds = bench_quick(w->bench) ? 3 : 5;
+    const int           rounds = bench_quick(w->bench) ? 2 : 5;
     WoodsFrame          frame[woods_details];
     BenchTime           time[woods_details] = {{.rounds = rounds}, {.rounds = rounds}}, cores[woods_details];
     char                what[what_size];
@@ -89,8 +89,8 @@ static Status time_default(WoodsBench *w, int v)
     double              refined = 0;
     for (int r = 0; r < rounds; r++)
         for (int k = 0; k < kinds; k++) {
-            WoodsFrame   f = woods_frame(w, k < woods_details ? k : 0, k < woods_details ? &as_node : &one, w->many,
-                                         w->arena[0]);
+            WoodsFrame f =
+                woods_frame(w, k < woods_details ? k : 0, k < woods_details ? &as_node : &one, w->many, w->arena[0]);
             const double start_s = wall_clock_s();
             woods_render(&f);
             if (f.frame.status != STATUS_OK) return f.frame.status;
