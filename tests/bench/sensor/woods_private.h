@@ -46,11 +46,11 @@ WoodsFrame woods_frame(WoodsBench *w, int detail, const RenderRequest *request, 
 void       woods_render(void *user); /* user: a WoodsFrame */
 /* View of a pose from south of the vehicles, so far that its middle is at their height. */
 View woods_view(const WoodsBench *w, int v);
-/* One ray of samples x samples a pixel, all bands, all truth. */
+/* samples x samples rays in every pixel, no others; all bands, all truth. */
 RenderRequest woods_request(const WoodsBench *w, int v, int samples);
 
-/* Height in the picture below which every plant may be in the representation that is judged, and just below which every
- * plant is. */
+/* Height in the picture just below which every plant is in the representation that is judged (forest_create's
+ * threshold; the lowest, where it differs from plant to plant). */
 double woods_change_px(const WoodsBench *w);
 /* Whether a pixel's `instance` is a standing plant. */
 static inline bool woods_is_standing(uint32_t instance) { return instance && !((instance - 1) & forest_low_bit); }
