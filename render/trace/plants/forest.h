@@ -12,12 +12,16 @@
 
 typedef struct Forest Forest;
 
+/* Height in the picture from which a standing plant is met itself where tables are used, least and most: each plant has
+ * one of its own, so that a row of trees does not change all at once. */
+static const double forest_table_px[2] = {24, 40};
+
 typedef struct ForestConfig {
     bool   leaves;    /* false: deciduous plants are bare */
     double level1_px; /* a standing plant lower than this in the picture is traced at level 1; 0: never */
     double sway;      /* 0: plants stand still; 1: they sway by the wind of the frame */
     bool   tables;    /* rays from the frame's eye and to the sun meet standing plants that are lower in the picture
-                       * than 24 .. 40 px, each by a height of its own, in tables (plant_table.h) */
+                       * than forest_table_px in tables (plant_table.h) */
 } ForestConfig;
 
 /* woods and plants must outlive it. isa: as tracer_create. Memory: 140 octets or less a standing plant, Plant's own 20
@@ -64,7 +68,7 @@ typedef struct ForestHit {
     uint32_t place; /* in its list */
     uint32_t quad;  /* of its shape */
     uint8_t  kind, level, organ;
-    bool     back;  /* met from the inner side of its surface (leaves: the card's back) */
+    bool     back; /* met from the inner side of its surface (leaves: the card's back) */
     bool     by_table;
     float    uv[2]; /* on the quad */
 } ForestHit;

@@ -5,13 +5,12 @@
  * every processor has the same bits. */
 #include "render/trace/plants/forest_private.h"
 
-/* Height in the picture, px, from which a plant is met itself. Each plant has one of its own, so that a row of trees
- * does not change all at once. */
+/* Height in the picture from which a plant is met itself. */
 static double least_real_px(uint32_t place)
 {
     uint32_t h = place * 0x9e3779b1u;
     h = (h ^ h >> 15) * 0x85ebca77u;
-    return 24 + 16 * ((double)(h ^ h >> 13) * 0x1p-32);
+    return forest_table_px[0] + (forest_table_px[1] - forest_table_px[0]) * ((double)(h ^ h >> 13) * 0x1p-32);
 }
 
 /* The coarsest level whose texels are not wider than what one ray stands for. */
@@ -98,8 +97,8 @@ unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const 
                     uint32_t place, unsigned lanes)
 {
     const F32x8 zero = f32x8_set(0), side = f32x8_set(table_side >> card->level);
-    F32x8       o[3], d[3], at[3] = {f32x8_set((double)card->at[0]), f32x8_set((double)card->at[1]),
-                                     f32x8_set((double)card->at[2])};
+    F32x8       o[3], d[3],
+        at[3] = {f32x8_set((double)card->at[0]), f32x8_set((double)card->at[1]), f32x8_set((double)card->at[2])};
     for (int c = 0; c < 3; c++) {
         d[c] = f32x8_load(rays->d[c]);
         o[c] = f32x8_set((double)card->from[c]);
@@ -109,11 +108,12 @@ unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const 
     /* where a ray goes through the middle plane */
     const F32x8 per = f32x8_set(1) / dot(card->n, d), middle_m = (zero - at[0]) * per;
     const F32x8 column = f32x8_fma(middle_m, dot(card->u, d), at[1]), row = f32x8_fma(middle_m, dot(card->v, d), at[2]);
-    F32x8       in = f32x8_and(f32x8_mask(lanes), f32x8_and(f32x8_and(f32x8_at_most(zero, column), f32x8_less(column, side)),
-                                                            f32x8_and(f32x8_at_most(zero, row), f32x8_less(row, side))));
+    F32x8 in = f32x8_and(f32x8_mask(lanes), f32x8_and(f32x8_and(f32x8_at_most(zero, column), f32x8_less(column, side)),
+                                                      f32x8_and(f32x8_at_most(zero, row), f32x8_less(row, side))));
     if (!f32x8_bits(in)) return 0;
-    const I32x8 texel = look_up(card, i32x8_add(i32x8_mul(i32x8_truncate(row), i32x8_set(table_side >> card->level)),
-                                                i32x8_truncate(column)), in);
+    const I32x8 texel = look_up(
+        card, i32x8_add(i32x8_mul(i32x8_truncate(row), i32x8_set(table_side >> card->level)), i32x8_truncate(column)),
+        in);
     in = f32x8_and_not(in, i32x8_equal(texel, i32x8_set(table_nothing)));
     if (!f32x8_bits(in)) return 0;
     const F32x8 depth = f32x8_of_ints(i32x8_shift_signed(texel, table_quad_bits)) * f32x8_set((double)card->unit);

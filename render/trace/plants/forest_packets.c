@@ -1,5 +1,5 @@
-/* render/trace/plants/forest_packets.c: rays through lists of plants, eight at a time: each plant whose box some of them
- * enter is met by its table, or itself. */
+/* render/trace/plants/forest_packets.c: rays through lists of plants, eight at a time: each plant whose box some of
+ * them enter is met by its table, or itself. */
 #include "render/trace/plants/forest_private.h"
 
 static const double past = 1 + 1e-6; /* a float's distance may be that much short */
@@ -16,7 +16,7 @@ typedef struct Memory {
 typedef struct Packet {
     struct RTCIntersectContext base; /* first: Embree passes it to the callbacks */
     CardRays                   rays;
-    Memory                      *kept;
+    Memory                    *kept;
     int                        count;
     unsigned                   by_table; /* lanes that need no plant itself */
     unsigned                   table_hit;
@@ -111,7 +111,8 @@ void plant_occlude(const struct RTCOccludedFunctionNArguments *a)
     uint32_t         quad[card_lanes];
     p->entered += (uint64_t)__builtin_popcount(lanes);
     unsigned stopped = 0;
-    for (unsigned met = tables ? card_meets(range_m, quad, card, &p->rays, a->primID, tables) : 0; met; met &= met - 1) {
+    for (unsigned met = tables ? card_meets(range_m, quad, card, &p->rays, a->primID, tables) : 0; met;
+         met &= met - 1) {
         const int l = __builtin_ctz(met);
         if ((double)range_m[l] < p->ray[l].limit_m) p->ray[l].met = true, stopped |= 1u << l;
     }
@@ -154,8 +155,8 @@ static bool open_ray(Packet *p, int lane, const double *const o_enu[3], const do
         if (p->rays.way_enu) p->rays.o[c][lane] = (float)(ray->o_enu[c] - frame->forest->standing.origin_enu[c]);
     }
     const double *way = p->rays.way_enu;
-    const bool    alike = !way ? is_eye(frame, ray)
-                               : ray->d_enu[0] == way[0] && ray->d_enu[1] == way[1] && ray->d_enu[2] == way[2];
+    const bool    alike =
+        !way ? is_eye(frame, ray) : ray->d_enu[0] == way[0] && ray->d_enu[1] == way[1] && ray->d_enu[2] == way[2];
     if (alike && !real && frame->forest->config.tables && frame->ray_px > 0) p->by_table |= 1u << lane;
     return v3_dot(ray->d_enu, ray->d_enu) < 2 &&
            fabs(ray->o_enu[0]) + fabs(ray->o_enu[1]) + fabs(ray->o_enu[2]) < most_m;
@@ -273,8 +274,8 @@ static int ray_at(int k, int count, int columns)
     return (row + in % 8 / 4) * columns + in / 8 * 4 + in % 4;
 }
 
-/* Whether Embree may cull boxes for all lanes at once: by a frustum, in which rays along an axis, or of several octants,
- * miss boxes that they enter. */
+/* Whether Embree may cull boxes for all lanes at once: by a frustum, in which rays along an axis, or of several
+ * octants, miss boxes that they enter. */
 static bool is_frustum(const Packet *p, unsigned lanes)
 {
     static const float least = 1e-3f;
@@ -293,7 +294,7 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
     const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
     struct RTCBounds bounds[2];
     Packet           p;
-    Memory             kept;
+    Memory           kept;
     for (int k = 0; k < 2; k++) {
         if (lists[k] && !lists[k]->scene) lists[k] = NULL;
         if (lists[k]) rtcGetSceneBounds(lists[k]->scene, &bounds[k]);
@@ -355,7 +356,7 @@ uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, con
     const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
     double           way[3] = {0};
     Packet           p;
-    Memory             kept;
+    Memory           kept;
     for (int c = 0; c < 3 && count > 0; c++) way[c] = d_enu[c][0];
     open_packets(&p, &kept, frame, way);
     for (int i = 0; i < count;) {

@@ -18,7 +18,7 @@ typedef struct ShapeScene {
     const LeafOutline *outline;            /* [plant_outlines] */
     double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
     const double (*azimuth)[2];            /* unit vectors of azimuths, [shape_azimuths + 1] of the forest */
-    double most;                     /* a coordinate of its box has, either way */
+    double most;                           /* a coordinate of its box has, either way */
     double reach[shape_azimuths + 1];      /* how far it reaches towards azimuths from x to y, from its axis; the last
                                             * is the first */
 } ShapeScene;
@@ -32,8 +32,8 @@ typedef struct PlantList {
     int                  count;
     double               origin_enu[3];
     RTCScene             scene; /* NULL: none */
-    int8_t (*bounds)[6]; /* [count] box of each about its foot, without sway: lowest and highest, in units of
-                          * plant_bounds_unit_m; NULL: not kept */
+    int8_t (*bounds)[6];        /* [count] box of each about its foot, without sway: lowest and highest, in units of
+                                 * plant_bounds_unit_m; NULL: not kept */
 } PlantList;
 
 typedef struct LowSquares LowSquares; /* low_plants.c */
@@ -120,21 +120,21 @@ typedef struct CardRays {
     const ForestFrame *frame;
     const double      *way_enu; /* NULL: they leave the eye */
     double             bend_per_m;
-    float    d[3][card_lanes], o[3][card_lanes];             /* o: about the list's origin; not of rays from the eye */
-    int32_t  own_place[card_lanes], own_quad[card_lanes];    /* of the plant and the quad that a ray leaves; -1: none */
+    float              d[3][card_lanes], o[3][card_lanes]; /* o: about the list's origin; not of rays from the eye */
+    int32_t own_place[card_lanes], own_quad[card_lanes];   /* of the plant and the quad that a ray leaves; -1: none */
 } CardRays;
 
-/* A plant by its table: what is met on the way from the eye to its middle, or against the way of the rays. Metres of ENU
- * to units of the table; the box outside which nothing counts. */
+/* A plant by its table: what is met on the way from the eye to its middle, or against the way of the rays. Metres of
+ * ENU to units of the table; the box outside which nothing counts. */
 typedef struct Card {
-    bool         real;  /* it is met itself */
-    PlantTable  *table;
-    int          way, level;
-    float        n[3], u[3], v[3]; /* depth in metres along the table's direction over the ray's; columns and rows */
-    float        at[3];            /* those of the eye, or of the plant's foot */
-    float        from[3];          /* from the plant's foot to the eye; or from the list's origin to the foot */
-    float        low[3], high[3];
-    float        unit, step_m; /* of depth; width of a texel of the finest level */
+    bool        real; /* it is met itself */
+    PlantTable *table;
+    int         way, level;
+    float       n[3], u[3], v[3]; /* depth in metres along the table's direction over the ray's; columns and rows */
+    float       at[3];            /* those of the eye, or of the plant's foot */
+    float       from[3];          /* from the plant's foot to the eye; or from the list's origin to the foot */
+    float       low[3], high[3];
+    float       unit, step_m; /* of depth; width of a texel of the finest level */
 } Card;
 
 void card_make(Card *card, const CardRays *rays, const PlantList *list, const Plant *plant);

@@ -48,8 +48,8 @@ typedef struct PlantTable {
 Status plant_table_create(PlantTable **out, const struct ShapeScene *shape);
 void   plant_table_destroy(PlantTable *table); /* accepts NULL */
 
-/* The way nearest to a direction of any length in the prototype's axes, within 0.3 degrees; -1: it rises by more than 15
- * degrees, which no table holds. */
+/* The way nearest to a direction of any length in the prototype's axes, within 0.3 degrees; -1: it rises by more than
+ * 15 degrees, which no table holds. */
 int plant_table_way(const double d[3]);
 /* The texels of a way and level, in rows by v. */
 static inline const uint32_t *plant_table_texels(const PlantTable *table, int way, int level)

@@ -116,7 +116,8 @@ static void plants_any(const TraceShadow *s, const void *self)
     }
     if (left == 0) return;
     const double *const o[3] = {start[0], start[1], start[2]};
-    s->counters->rays_sun_plants += forest_any_hits(dark, self, left, o, s->d_enu, far_m, &(ForestLeft){real, place, quad});
+    s->counters->rays_sun_plants +=
+        forest_any_hits(dark, self, left, o, s->d_enu, far_m, &(ForestLeft){real, place, quad});
     for (int k = 0; k < left; k++) s->dark[ray[k]] |= dark[k];
 }
 
