@@ -112,7 +112,7 @@ static const BenchSuite suites[] = {
      .run = bench_speed_radar},
     {.name = "woods",
      .room = "sensor",
-     .options = "trees=N: at most; 3000000,level1-px=PX: plants lower than this are simplified; 24",
+     .options = "trees=N: at most; 3000000",
      .help =
          "frames of three million trees over 192 M posts, in full detail and with two levels of it: time, and what the "
          "latter costs in pictures, vehicles seen, a flight, recognisers",
