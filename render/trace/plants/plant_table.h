@@ -18,7 +18,7 @@ enum {
     table_azimuths = 32,
     table_elevations = 15,
     table_ways = table_azimuths * table_elevations,
-    table_side = 96, /* texels of the finest level; each further has half of them */
+    table_side = 128, /* texels of the finest level; each further has half of them */
     table_levels = 4,
     /* a texel: what was met. Of a hit: 2 + quad in the lower bits, depth in the upper, signed, in radius /
      * table_depth_steps behind the middle of the prototype's box. */
