@@ -153,7 +153,7 @@ static void judge_one_ray(PlaneRows *r)
                           judged, full);
         if (r->k > 0) snprintf(text + at, sizeof text - (size_t)at, " = %.2g / %.2g K", judged * r->k, full * r->k);
         judge(r, k ? "one ray, blocks of 8 px" : "one ray, blocks of 4 px",
-              estimate(r, k ? FIGURE_ONE_8 : FIGURE_ONE_4), (WoodsLimit){1, "x"}, text);
+              estimate(r, k ? FIGURE_ONE_8 : FIGURE_ONE_4), (WoodsLimit){1, "x", false}, text);
     }
 }
 
@@ -165,22 +165,22 @@ static void judge_structure(PlaneRows *r)
              estimate(r, FIGURE_STRUCTURE_1).value, estimate(r, FIGURE_STRUCTURE_8).value);
     if (r->k > 0) error.value *= r->k, error.se *= r->k;
     judge(r, "structural error, blocks of 4 px", error,
-          r->plane == picture_lwir   ? (WoodsLimit){0.15, "K"}
-          : r->plane == picture_mwir ? (WoodsLimit){NAN, "K"}
-                                     : (WoodsLimit){10, "%"},
+          r->plane == picture_lwir   ? (WoodsLimit){0.15, "K", false}
+          : r->plane == picture_mwir ? (WoodsLimit){NAN, "K", false}
+                                     : (WoodsLimit){10, "%", false},
           text);
 }
 
 static void judge_plane(PlaneRows *r)
 {
-    static const WoodsLimit alike = {15, "%"};
+    static const WoodsLimit alike = {15, "%", false};
     char                    text[160];
     const double           *full = r->sum + SUM_LAGS, *judged = full + lags_most;
     const int               lags = r->errors.lags;
     const Estimate          bias = estimate(r, FIGURE_BIAS);
     if (r->k > 0) snprintf(text, sizeof text, "16 and 36 rays, both; %+.3g K", bias.value * r->k);
     else snprintf(text, sizeof text, "16 and 36 rays, both");
-    judge(r, "mean", bias, (WoodsLimit){1, "%"}, text);
+    judge(r, "mean", bias, (WoodsLimit){1, "%", false}, text);
     judge_one_ray(r);
     judge_structure(r);
     snprintf(text, sizeof text, "deviation within tiles; %.3g / %.3g %% of the mean", percent(r, SUM_CONTRAST + 1),
@@ -273,7 +273,7 @@ static void judge_cover(WoodsBench *w, int v, const Pieces *p)
     snprintf(what, sizeof what, "%s: %s: cover", woods_pose[v].name, woods_detail[1]);
     snprintf(text, sizeof text, "pixels of standing plants, one ray, both; %.4g %% in full detail",
              100 * all / p->tiles / p->tile[0].side / p->tile[0].side);
-    woods_judge(w, what, group_estimate(cover_off, &cover, p->tiles), (WoodsLimit){0.5, "%"}, text);
+    woods_judge(w, what, group_estimate(cover_off, &cover, p->tiles), (WoodsLimit){0.5, "%", false}, text);
 }
 
 /* ---- the piece ------------------------------------------------------------------------------------ */

@@ -2,11 +2,11 @@
  * change of representation adds to the change from frame to frame, and whether some frames take longer than others.
  *
  * Twice a second two frames are rendered, 1/25 s apart, each in full detail (F, then F') and in the representation that
- * is judged (T, T'); sun, plants and ground stand still. A plant that reaches its full detail in between changes by F'
- * - T, where full detail changes by F' - F. Few do in one step; so all pixels are taken of plants that are nearly as
- * high in the picture as those that change. The share of their change that full detail does not have is 1 - <(F' -
- * F)^2> /
- * <(F' - T)^2>: 0: none; 50 %: the jump is as large as the change (motion and sampling) that full detail has anyway. */
+ * is judged (T, T'); sun, plants and ground stand still. A plant that reaches its full detail in between changes from T
+ * to F', where full detail changes from F to F'. Few do in one step; so all pixels are taken of plants that are nearly
+ * as high in the picture as those that change. With means of squares over them, the share of the change that full
+ * detail does not have is 1 - <(F' - F)^2> / <(F' - T)^2>. 0: none; 50 %: the jump is as large as the change by motion
+ * and sampling that full detail has anyway; below 0: the judged representation is smoother, and hides some of that. */
 #include "tests/bench/sensor/woods_private.h"
 
 enum { frames_most = 40, block_px = 4, least_px = 8 /* of a block's 16 */ };
@@ -145,10 +145,10 @@ static void judge_changes(const Flight *f)
                      woods_plane[woods_band_plane[b]], scale[k]);
             snprintf(text, sizeof text, "share of the plants' change that full detail has not; %g pixels in %g frames",
                      pixels, frames);
-            woods_judge(f->w, what, group_estimate(change_of, &change, f->frames), (WoodsLimit){50, "%"}, text);
+            woods_judge(f->w, what, group_estimate(change_of, &change, f->frames), (WoodsLimit){50, "%", true}, text);
             snprintf(what, sizeof what, "flight: %s, %s: change from frame to frame, %s", woods_detail[1],
                      woods_plane[woods_band_plane[b]], scale[k]);
-            woods_judge(f->w, what, group_estimate(change_of, &all, f->frames), (WoodsLimit){NAN, "%"},
+            woods_judge(f->w, what, group_estimate(change_of, &all, f->frames), (WoodsLimit){NAN, "%", true},
                         "rms beyond that of full detail, 1/25 s apart, all of the picture");
         }
 }

@@ -40,9 +40,10 @@ void woods_judge(WoodsBench *w, const char *what, Estimate figure, WoodsLimit li
     if (judged) {
         const size_t at = strlen(words);
         snprintf(words + at, sizeof words - at, "; asked: %g", limit.limit);
-        row.error_limit = limit.limit + (figure.se >= 0 ? fmin(2 * figure.se, 0.5 * limit.limit) : 0);
+        row.error_limit =
+            limit.limit + (figure.se >= 0 ? fmin(fmax(2 * figure.se, 0.005 * limit.limit), 0.5 * limit.limit) : 0);
     }
-    row.error = fabs(figure.value);
+    row.error = limit.below ? figure.value : fabs(figure.value);
     row.error_unit = limit.unit;
     row.against = words;
     bench_add(w->bench, &row);
@@ -252,6 +253,7 @@ static Status time_all(WoodsBench *w)
     for (int v = 0; v < woods_views && status == STATUS_OK; v++) status = woods_stages(w, v);
     if (status == STATUS_OK) status = woods_targets(w);
     if (status == STATUS_OK) status = woods_flight(w);
+    woods_say(w, "memory: at most in the whole bench", bench_memory_mb("VmHWM:"), "MB");
     return status;
 }
 

@@ -61,12 +61,13 @@ double woods_processor_s(void);
 void woods_say(WoodsBench *w, const char *what, double value, const char *unit);
 void woods_say_memory(WoodsBench *w, const char *what, double limit_mb);
 
-/* The magnitude of a figure beside its limit. Its standard error is said; twice it, and at most half the limit, is
- * allowed beyond the limit, so that noise alone seldom fails a row, and a figure that is hardly known cannot pass by
- * that. limit NaN: none. Quick runs have too few pixels for limits: theirs have none. */
+/* The magnitude of a figure beside its limit. Its standard error is said; twice it, at least 0.5 % and at most half of
+ * the limit, is allowed beyond the limit, so that noise alone seldom fails a row, and a figure that is hardly known
+ * cannot pass by that. limit NaN: none. Quick runs have too few pixels for limits: theirs have none. */
 typedef struct WoodsLimit {
     double      limit;
     const char *unit;
+    bool        below; /* whatever is below 0 is well, and the figure keeps its sign */
 } WoodsLimit;
 void woods_judge(WoodsBench *w, const char *what, Estimate figure, WoodsLimit limit, const char *text);
 

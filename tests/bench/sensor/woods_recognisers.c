@@ -75,7 +75,7 @@ static Status count_alarms(WoodsBench *w, int v, const Shots *s, int plane, cons
     snprintf(what, sizeof what, "%s: %s, %s: false alarms", woods_pose[v].name, woods_detail[1], woods_plane[plane]);
     snprintf(text, sizeof text, "double window of 3, 9, 15 px, contrast above %.2f; %g / %g a picture", least, all[1],
              all[0]);
-    woods_judge(w, what, group_estimate(alarms_off, &alarms, groups), (WoodsLimit){10, "%"}, text);
+    woods_judge(w, what, group_estimate(alarms_off, &alarms, groups), (WoodsLimit){10, "%", false}, text);
     return STATUS_OK;
 }
 
@@ -243,9 +243,9 @@ Status woods_classify(WoodsBench *w, const WoodsRings *rings)
     snprintf(what, sizeof what, "%s: vehicles by their surroundings: AUC", woods_detail[1]);
     snprintf(text, sizeof text, "logistic regression, target blanked, %d places; %.3f +- %.2g / %.3f +- %.2g", known,
              judged.value, judged.se, full.value, full.se);
-    woods_judge(w, what, off, (WoodsLimit){10, "%"}, text);
+    woods_judge(w, what, off, (WoodsLimit){10, "%", false}, text);
     snprintf(what, sizeof what, "%s: told from full detail: AUC", woods_detail[1]);
-    woods_judge(w, what, group_estimate(auc_alone, &q[woods_details], site_groups), (WoodsLimit){NAN, ""},
+    woods_judge(w, what, group_estimate(auc_alone, &q[woods_details], site_groups), (WoodsLimit){NAN, "", false},
                 "by the same features, places without vehicles; 0.5: cannot be told");
     free(q);
     return STATUS_OK;

@@ -185,8 +185,8 @@ static void say_sight(WoodsBench *w, int v, const Sight *s, int way)
     snprintf(text, sizeof text,
              "rms difference, %g vehicles, 1024 rays each, %g seen in part; mean %.4f / %.4f: %+.2g +- %.1g", known,
              partly, seen[1] / known, seen[0] / known, mean.value, mean.se);
-    woods_judge(w, what, group_estimate(difference_of, &of, s->snapshot.count), (WoodsLimit){way ? 0.02 : NAN, ""},
-                text);
+    woods_judge(w, what, group_estimate(difference_of, &of, s->snapshot.count),
+                (WoodsLimit){way ? 0.02 : NAN, "", false}, text);
 }
 
 /* Straight rays in still air: the difference does not need refraction. */
