@@ -30,6 +30,7 @@ static inline F32x8 f32x8_abs(F32x8 x) { return _mm256_andnot_ps(_mm256_set1_ps(
 static inline F32x8 f32x8_floor(F32x8 x) { return _mm256_floor_ps(x); }
 static inline F32x8 f32x8_lerp(F32x8 a, F32x8 b, F32x8 t) { return f32x8_fma(t, b - a, a); }
 static inline F32x8 f32x8_less(F32x8 a, F32x8 b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
+static inline F32x8 f32x8_at_most(F32x8 a, F32x8 b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
 static inline F32x8 f32x8_greater(F32x8 a, F32x8 b) { return _mm256_cmp_ps(a, b, _CMP_GT_OQ); }
 static inline F32x8 f32x8_and(F32x8 a, F32x8 b) { return _mm256_and_ps(a, b); }
 static inline F32x8 f32x8_or(F32x8 a, F32x8 b) { return _mm256_or_ps(a, b); }
@@ -97,6 +98,7 @@ static inline I32x8 i32x8_mul(I32x8 a, I32x8 b) { return _mm256_mullo_epi32(a, b
 static inline I32x8 i32x8_and(I32x8 a, I32x8 b) { return _mm256_and_si256(a, b); }
 static inline I32x8 i32x8_xor(I32x8 a, I32x8 b) { return _mm256_xor_si256(a, b); }
 static inline I32x8 i32x8_shift_right(I32x8 a, int bits) { return _mm256_srli_epi32(a, bits); }
+static inline I32x8 i32x8_shift_signed(I32x8 a, int bits) { return _mm256_srai_epi32(a, bits); } /* to the right */
 static inline F32x8 i32x8_equal(I32x8 a, I32x8 b) { return _mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)); }
 static inline F32x8 i32x8_greater(I32x8 a, I32x8 b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(a, b)); }
 static inline I32x8 i32x8_select(F32x8 mask, I32x8 yes, I32x8 no)
@@ -104,6 +106,11 @@ static inline I32x8 i32x8_select(F32x8 mask, I32x8 yes, I32x8 no)
     return _mm256_blendv_epi8(no, yes, _mm256_castps_si256(mask));
 }
 static inline I32x8 i32x8_gather(const int32_t *p, I32x8 at) { return _mm256_i32gather_epi32(p, at, 4); }
+/* Only the lanes of a mask are read; the others are 0. */
+static inline I32x8 i32x8_gather_of(F32x8 mask, const int32_t *p, I32x8 at)
+{
+    return _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), p, at, _mm256_castps_si256(mask), 4);
+}
 
 /* ---- doubles ----------------------------------------------------------------------------------- */
 

@@ -87,6 +87,7 @@ void render_counters_add(RenderCounters *sum, const RenderCounters *more)
     to->rays_sun_parts += from->rays_sun_parts;
     to->rays_plants += from->rays_plants;
     to->rays_sun_plants += from->rays_sun_plants;
+    to->hits_by_table += from->hits_by_table;
     to->rays_sun_for_heat += from->rays_sun_for_heat;
     to->skipped_parts += from->skipped_parts;
     to->skipped_sun_parts += from->skipped_sun_parts;

@@ -18,6 +18,7 @@ static Status open_plants(ShadeScene *scene, Visibility *visibility, const Rende
     }
     Status status = forest_frame_open(&scene->plants, scene->world->forest, request->view.p_enu, request->view.focal_px,
                                       request->low_plants_m, request->t_s, wind_mps, pool, arena);
+    scene->plants.ray_px = 1 / fmax(request->samples, 1); /* samples x samples rays a pixel */
     if (status == STATUS_OK) status = visibility_plants(visibility, &scene->plants);
     if (status != STATUS_OK) return status;
     scene->bare = visibility_without_plants(visibility, arena);

@@ -281,6 +281,7 @@ static Status trace_stand(WoodStand *stand, const Forest *forest, const Material
     Job                *job = calloc(1, sizeof *job);
     if (!job) return STATUS_NO_MEMORY;
     Status status = forest_frame_open(&frame, forest, eye_enu, 1, 0, 0, calm_mps, NULL, NULL);
+    frame.ray_px = 0; /* by the plants themselves */
     job->stand = stand, job->materials = materials, job->frame = &frame;
     if (status == STATUS_OK) {
         if (pool) pool_run(pool, stand_views, trace_view, job);

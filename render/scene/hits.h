@@ -35,7 +35,7 @@ typedef struct Hits {
     float    n_enu[3][hits_capacity]; /* unit shading normal, on the ray's side */
     uint8_t  kind[hits_capacity];     /* HitKind */
     uint16_t material[hits_capacity]; /* row in the table of materials (visibility_materials); 0: sky */
-    uint32_t facet[hits_capacity];    /* triangle of the model, where kind is hit_part */
+    uint32_t facet[hits_capacity];    /* triangle of the model, where kind is hit_part; of plants, ForestHit.quad */
     uint32_t entity[hits_capacity];   /* snapshot index + 1; 0: ground or sky */
     uint16_t part[hits_capacity];     /* part index of the model + 1; 0: ground or sky */
     uint16_t model[hits_capacity];    /* of the catalog, where entity > 0 */

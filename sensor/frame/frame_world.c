@@ -65,7 +65,8 @@ Status frame_world_plant(World *world, const Woods *woods, const Config *config,
 {
     const ForestConfig forest = {.leaves = config->terrain.woods_leaves,
                                  .level1_px = config->terrain.woods_level1_px,
-                                 .sway = config->terrain.woods_sway};
+                                 .sway = config->terrain.woods_sway,
+                                 .tables = config->terrain.woods_tables};
     if (!woods) return STATUS_OK;
     const double begun_s = wall_clock_s();
     const Status status = world_plant(world, woods, &forest, isa, pool);

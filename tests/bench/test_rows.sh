@@ -120,8 +120,19 @@ woods)
         rows "$view: one ray a pixel, two levels.*planes of one thread, nothing skipped\",yes,"
         rows "$view: default quality, full detail" "$view: default quality: pixels sampled again"
         for plane in red green blue "3-5 um" "8-12 um"; do rows "$view: two levels, $plane"; done
+        rows "$view: default quality, two levels" "$view: two levels: cover"
+        for plane in red "3-5 um" "8-12 um"; do
+            for figure in mean "one ray, blocks of 4 px" "one ray, blocks of 8 px" "structural error, blocks of 4 px" \
+                "contrast of a pixel, one ray" "contrast of a pixel" "autocorrelation length"; do
+                rows "$view: two levels, $plane: $figure"
+            done
+        done
     done
-    rows "memory: with frames of all views, full detail.*,yes," ;;
+    rows "memory: with frames of all views, full detail.*,yes," "woods: set-up of two levels" "memory: with a forest of two levels" \
+        "two levels: visible share of vehicles, as in frames" "two levels: visible share of vehicles, by its plants alone" \
+        "two levels, red: false alarms" "two levels, 8-12 um: false alarms" "two levels: vehicles by their surroundings: AUC" \
+        "two levels: told from full detail: AUC" "flight: two levels, red: change of representation, pixels" \
+        "flight: two levels, 8-12 um: change from frame to frame, blocks of 4 px" "flight: slowest frame over the median, two levels" ;;
 *) fail "no rows are known of $group" ;;
 esac
 

@@ -109,7 +109,7 @@ static void compare(const Woods *woods, const double centre[3], double radius_m,
     aim(o, d, centre, radius_m);
     for (int i = 0; i < rays; i++) range_m[i] = far_m[i] = i % 5 ? INFINITY : radius_m, dark[i] = 0;
     forest_first_hits(range_m, hit, &frame, rays, from, way, real);
-    forest_any_hits(dark, &frame, rays, from, way, far_m, real);
+    forest_any_hits(dark, &frame, rays, from, way, far_m, &(ForestLeft){.real = real});
     for (int i = 0; i < rays; i++) {
         uint32_t     plant = 0, quad = 0;
         const double want_m = by_force(&plant, &quad, woods, (const double[3]){o[0][i], o[1][i], o[2][i]},

@@ -213,7 +213,7 @@ static void shadows(void **state)
             d[c][i] = sun_enu[c];
         }
     }
-    forest_any_hits(by_plant, &stage.plants[1], rays.count, from, way, far_m, real);
+    forest_any_hits(by_plant, &stage.plants[1], rays.count, from, way, far_m, &(ForestLeft){.real = real});
     for (int i = 0; i < rays.count; i++) {
         assert_int_equal(with[i], without[i] || by_plant[i]);
         dark[bare.entity[i] != 0] += with[i] && !without[i];

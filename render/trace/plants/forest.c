@@ -54,6 +54,7 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
     for (int c = 0; c < 3; c++) {
         out->centre[c] = 0.5 * ((double)shape->low[c] + (double)shape->high[c]);
         out->half[c] = 0.5 * ((double)shape->high[c] - (double)shape->low[c]) + 1e-4;
+        out->most = fmax(out->most, fabs(out->centre[c]) + out->half[c]);
     }
     if (quads == 0) return STATUS_OK;
     find_reach(out, quads);
@@ -89,6 +90,8 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
 Status plant_list_commit(PlantList *list, const Forest *forest, bool quick)
 {
     if (list->count == 0) return STATUS_OK;
+    if (!list->frame && forest->config.tables && !(list->bounds = malloc((size_t)list->count * sizeof *list->bounds)))
+        return STATUS_NO_MEMORY;
     RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_USER);
     if (!geometry) return STATUS_NO_MEMORY;
     list->scene = rtcNewScene(forest->device);
@@ -113,7 +116,8 @@ Status plant_list_commit(PlantList *list, const Forest *forest, bool quick)
 void plant_list_close(PlantList *list)
 {
     if (list->scene) rtcReleaseScene(list->scene);
-    list->scene = NULL;
+    free(list->bounds);
+    list->scene = NULL, list->bounds = NULL;
 }
 
 /* ---- the forest ------------------------------------------------------------------------------- */
@@ -145,6 +149,8 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
     for (int kind = 0; kind < PLANT_KINDS && status == STATUS_OK; kind++)
         for (int level = 0; level < plant_levels && status == STATUS_OK; level++)
             status = build_shape(&forest->shape[kind][level], forest, kind, level);
+    for (int kind = 0; kind < PLANT_STANDING && status == STATUS_OK && config->tables; kind++)
+        if (forest->shape[kind][0].scene) status = plant_table_create(&forest->table[kind], &forest->shape[kind][0]);
     forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count};
     memcpy(forest->standing.origin_enu, woods->origin_enu, sizeof woods->origin_enu);
     if (status == STATUS_OK) status = plant_list_commit(&forest->standing, forest, false);
@@ -177,6 +183,7 @@ void forest_destroy(Forest *forest)
 {
     if (!forest) return;
     plant_list_close(&forest->standing);
+    for (int kind = 0; kind < PLANT_STANDING && !forest->borrows; kind++) plant_table_destroy(forest->table[kind]);
     for (int kind = 0; kind < PLANT_KINDS && !forest->borrows; kind++)
         for (int level = 0; level < plant_levels; level++)
             if (forest->shape[kind][level].scene) rtcReleaseScene(forest->shape[kind][level].scene);
@@ -188,14 +195,15 @@ void forest_destroy(Forest *forest)
 const Woods  *forest_woods(const Forest *forest) { return forest->woods; }
 const Plants *forest_plants(const Forest *forest) { return forest->plants; }
 ForestConfig  forest_config(const Forest *forest) { return forest->config; }
-bool          forest_simplifies(const Forest *forest) { return forest->config.level1_px > 0; }
+
+bool forest_simplifies(const Forest *forest) { return forest->config.level1_px > 0 || forest->config.tables; }
 
 /* ---- a frame ---------------------------------------------------------------------------------- */
 
 Status forest_frame_open(ForestFrame *out, const Forest *forest, const double eye_enu[3], double per_rad,
                          double low_reach_m, double t_s, const double wind_mps[2], Pool *pool, Arena *arena)
 {
-    *out = (ForestFrame){.forest = forest, .per_rad = per_rad, .low_reach_m = low_reach_m, .t_s = t_s};
+    *out = (ForestFrame){.forest = forest, .per_rad = per_rad, .ray_px = 1, .low_reach_m = low_reach_m, .t_s = t_s};
     memcpy(out->eye_enu, eye_enu, sizeof out->eye_enu);
     memcpy(out->wind_mps, wind_mps, sizeof out->wind_mps);
     return low_reach_m > 0 ? low_plants_open(out, low_reach_m, pool, arena) : STATUS_OK;

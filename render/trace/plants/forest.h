@@ -12,10 +12,16 @@
 
 typedef struct Forest Forest;
 
+/* Height in the picture from which a standing plant is met itself where tables are used, least and most: each plant has
+ * one of its own, so that a row of trees does not change all at once. */
+static const double forest_table_px[2] = {56, 88};
+
 typedef struct ForestConfig {
     bool   leaves;    /* false: deciduous plants are bare */
     double level1_px; /* a standing plant lower than this in the picture is traced at level 1; 0: never */
     double sway;      /* 0: plants stand still; 1: they sway by the wind of the frame */
+    bool   tables;    /* rays from the frame's eye and to the sun meet standing plants that are lower in the picture
+                       * than forest_table_px in tables (plant_table.h) */
 } ForestConfig;
 
 /* woods and plants must outlive it. isa: as tracer_create. Memory: 140 octets or less a standing plant, Plant's own 20
@@ -32,13 +38,16 @@ void          forest_openness(Plants *plants, const Forest *forest, Pool *pool);
 const Woods  *forest_woods(const Forest *forest);
 const Plants *forest_plants(const Forest *forest);
 ForestConfig  forest_config(const Forest *forest);
-bool          forest_simplifies(const Forest *forest); /* level1_px > 0 */
+/* Whether some plants are not met themselves: level1_px > 0, or tables. */
+bool forest_simplifies(const Forest *forest);
 
 /* A forest as one frame sees it; a pure function of these. */
 typedef struct ForestFrame {
     const Forest *forest;
     double        eye_enu[3];  /* level of detail and low plants are by the distance from here */
     double        per_rad;     /* pixels a radian */
+    double        ray_px;      /* width of what a ray stands for: 1, of several a pixel less; 0: no tables are used */
+    int           columns;     /* of first hits: of a picture, in rows; 0: no order. A hint for speed alone */
     double        low_reach_m; /* low plants stand within this of the eye; 0: none */
     double        t_s;         /* exercise time, for sway */
     double        wind_mps[2]; /* east, north: towards which it blows */
@@ -59,17 +68,25 @@ typedef struct ForestHit {
     uint32_t place; /* in its list */
     uint32_t quad;  /* of its shape */
     uint8_t  kind, level, organ;
-    bool     back;  /* met from the inner side of its surface (leaves: the card's back) */
+    bool     back; /* met from the inner side of its surface (leaves: the card's back) */
+    bool     by_table;
     float    uv[2]; /* on the quad */
 } ForestHit;
 
 /* For rays of a block: where some plant is nearer than range_m, range_m and hit are replaced. real: [count], 1: plants
- * are never traced at level 1 for this ray; NULL: 0. Returns rays that entered some plant's box. Thread-safe. */
+ * are met themselves by this ray; NULL: 0. Returns rays that entered some plant's box. Thread-safe. */
 uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count,
                            const double *const o_enu[3], const double *const d_enu[3], const uint8_t *real);
-/* dark becomes 1 where some plant is met nearer than far_m; rays where it is 1 already are left out. real: as above. */
+
+/* What rays leave, [count] each. */
+typedef struct ForestLeft {
+    const uint8_t  *real;         /* as above */
+    const uint32_t *place, *quad; /* of hits on plants, ForestHit's; UINT32_MAX: none. NULL: no ray leaves a plant */
+} ForestLeft;
+/* dark becomes 1 where some plant is met nearer than far_m; rays where it is 1 already are left out. Tables are for
+ * rays of the direction of the first. left: NULL: none leaves a plant, and none is real. */
 uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, const double *const o_enu[3],
-                         const double *const d_enu[3], const double *far_m, const uint8_t *real);
+                         const double *const d_enu[3], const double *far_m, const ForestLeft *left);
 
 /* What shading needs of a hit. Normals are unit, ENU, on the ray's side; n_enu with the relief of bark. */
 typedef struct ForestSurface {

@@ -1,14 +1,19 @@
 /* render/trace/plants/forest_boxes.c: the box about a standing plant, for Embree's tree over all of them. */
 #include "render/trace/plants/forest_private.h"
 
-/* The azimuth of the table at or before that of a vector. An arctangent within 0.005 rad, a twentieth of the table's
- * step, leaves it within one of that; which side of it the vector is on says the rest. */
-static int azimuth_before(const double (*azimuth)[2], double x, double y)
+double plant_rough_angle(double x, double y)
 {
     const double wide = fabs(x), high = fabs(y), most = wide > high ? wide : high, least = wide > high ? high : wide;
     const double a = most > 0 ? least / most : 0, near_rad = a * (0.9724 - 0.1919 * a * a);
     const double quarter = wide > high ? near_rad : 0.5 * pi_rad - near_rad, half = x < 0 ? pi_rad - quarter : quarter;
-    const double turn = y < 0 ? 2 * pi_rad - half : half;
+    return most > 0 ? (y < 0 ? -half : half) : 0;
+}
+
+/* The azimuth of the table at or before that of a vector. A rough angle is off by a twentieth of the table's step, so
+ * that it leaves it within one of that; which side of it the vector is on says the rest. */
+static int azimuth_before(const double (*azimuth)[2], double x, double y)
+{
+    const double angle = plant_rough_angle(x, y), turn = angle < 0 ? angle + 2 * pi_rad : angle;
     int          k = (int)(turn * (shape_azimuths / (2 * pi_rad))) % shape_azimuths;
     if (azimuth[k][0] * y - azimuth[k][1] * x < 0) k = (k + shape_azimuths - 1) % shape_azimuths;
     else if (azimuth[k + 1][1] * x - azimuth[k + 1][0] * y < 0) k = (k + 1) % shape_azimuths;
@@ -40,33 +45,60 @@ static double box_along(const ShapeScene *shape, const double along[3])
     return reach;
 }
 
+/* Of all levels of its shape, without its sway. reach: of a shape along a vector of its axes. */
+static void bounds_by(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant,
+                      double (*reach)(const ShapeScene *, const double[3]))
+{
+    double m[9];
+    plant_transform(m, plant, NULL);
+    for (int c = 0; c < 3; c++) low_m[c] = INFINITY, high_m[c] = -INFINITY;
+    for (int l = 0; l < plant_levels; l++) {
+        const ShapeScene *level = &list->forest->shape[plant->kind][l];
+        if (!level->scene) continue;
+        for (int c = 0; c < 3; c++) {
+            const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
+            const double before = -reach(level, back), after = reach(level, along);
+            low_m[c] = before < low_m[c] ? before : low_m[c]; /* not fmin, which compiles to a call */
+            high_m[c] = after > high_m[c] ? after : high_m[c];
+        }
+    }
+    for (int c = 0; c < 3; c++) /* of a kind without quads */
+        if (!(low_m[c] <= high_m[c])) low_m[c] = high_m[c] = 0;
+}
+
+double plant_bounds_unit_m(const PlantList *list, const Plant *plant)
+{
+    static const double per = 1.0 / 120;
+    const double        height_m = plant_height_m(plant), wide = plant->width > 128 ? plant->width / 128.0 : 1;
+    return list->forest->shape[plant->kind][0].most * per * wide * height_m;
+}
+
+/* The box in whole units, outwards, which are kept. Lean adds less to a coordinate than the units have room for. */
+static void keep_bounds(double low_m[3], double high_m[3], const PlantList *list, uint32_t place)
+{
+    const double unit_m = plant_bounds_unit_m(list, &list->plant[place]);
+    int8_t      *kept = list->bounds[place];
+    for (int c = 0; c < 3; c++) {
+        kept[c] = (int8_t)clamp(floor(low_m[c] / unit_m), -127, 127);
+        kept[3 + c] = (int8_t)clamp(ceil(high_m[c] / unit_m), -127, 127);
+        low_m[c] = kept[c] * unit_m < low_m[c] ? kept[c] * unit_m : low_m[c];
+        high_m[c] = kept[3 + c] * unit_m > high_m[c] ? kept[3 + c] * unit_m : high_m[c];
+    }
+}
+
 /* Tight boxes cost as much as a ray each: worth it for those that stand for many frames. */
 void plant_box(const struct RTCBoundsFunctionArguments *a)
 {
     static const double room_m = 0.02; /* of a float 16 km from the origin, twenty times */
     const PlantList    *list = a->geometryUserPtr;
     const Plant        *plant = &list->plant[a->primID];
-    const ShapeScene   *level[plant_levels] = {&list->forest->shape[plant->kind][0],
-                                               &list->forest->shape[plant->kind][1]};
     const double        swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
-    double              m[9], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     float              *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
-    plant_transform(m, plant, NULL);
-    double (*const reach)(const ShapeScene *, const double[3]) = list->frame ? box_along : reach_along;
-    for (int l = 0; l < plant_levels; l++) {
-        if (!level[l]->scene) continue;
-        for (int c = 0; c < 3; c++) {
-            const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
-            const double before = -reach(level[l], back) - room_m - swing_m,
-                         after = reach(level[l], along) + room_m + swing_m;
-            low[c] = before < low[c] ? before : low[c]; /* not fmin, which compiles to a call */
-            high[c] = after > high[c] ? after : high[c];
-        }
-    }
-    for (int c = 0; c < 3; c++) /* of a kind without quads */
-        if (!(low[c] <= high[c])) low[c] = high[c] = 0;
+    double              low[3], high[3];
+    bounds_by(low, high, list, plant, list->frame ? box_along : reach_along);
+    if (list->bounds) keep_bounds(low, high, list, a->primID);
     for (int c = 0; c < 3; c++) {
-        bound[0][c] = (float)((double)plant->p_m[c] + low[c]);
-        bound[1][c] = (float)((double)plant->p_m[c] + high[c]);
+        bound[0][c] = (float)((double)plant->p_m[c] + low[c] - room_m - swing_m);
+        bound[1][c] = (float)((double)plant->p_m[c] + high[c] + room_m + swing_m);
     }
 }

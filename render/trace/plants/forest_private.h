@@ -5,6 +5,9 @@
 #include <embree3/rtcore.h>
 
 #include "render/trace/plants/forest.h"
+#include "render/trace/plants/plant_table.h"
+
+#include "pitviper_simd.h"
 
 enum { shape_azimuths = 64 };
 
@@ -15,6 +18,7 @@ typedef struct ShapeScene {
     const LeafOutline *outline;            /* [plant_outlines] */
     double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
     const double (*azimuth)[2];            /* unit vectors of azimuths, [shape_azimuths + 1] of the forest */
+    double most;                           /* a coordinate of its box has, either way */
     double reach[shape_azimuths + 1];      /* how far it reaches towards azimuths from x to y, from its axis; the last
                                             * is the first */
 } ShapeScene;
@@ -28,6 +32,8 @@ typedef struct PlantList {
     int                  count;
     double               origin_enu[3];
     RTCScene             scene; /* NULL: none */
+    int8_t (*bounds)[6];        /* [count] box of each about its foot, without sway: lowest and highest, in units of
+                                 * plant_bounds_unit_m; NULL: not kept */
 } PlantList;
 
 typedef struct LowSquares LowSquares; /* low_plants.c */
@@ -40,7 +46,8 @@ struct Forest {
     ForestConfig  config;
     ShapeScene    shape[PLANT_KINDS][plant_levels];
     double        azimuth[shape_azimuths + 1][2];
-    bool          borrows; /* their scenes */
+    PlantTable   *table[PLANT_STANDING]; /* of whole shapes; NULL: none */
+    bool          borrows;               /* their scenes and tables */
     PlantList     standing;
     LowSquares   *squares;
 };
@@ -61,8 +68,79 @@ void plant_occlude(const struct RTCOccludedFunctionNArguments *a);
 /* And of the quads of a prototype: user pointer is the ShapeScene. */
 void quad_intersect(const struct RTCFilterFunctionNArguments *a);
 void quad_occlude(const struct RTCFilterFunctionNArguments *a);
+
+/* ---- rays against plants themselves (forest_trace.c) ------------------------------------------- */
+
+/* Where a plant stands and how it is turned: the same for every ray of a frame. */
+typedef struct PlantFrame {
+    F64x4        column[3], per; /* from ENU to the prototype's axes, and scales there; the fourth lane is 0 */
+    double       foot_enu[3];
+    const Plant *plant; /* NULL: not known */
+    bool         low;   /* in the picture: level 1 is traced unless the ray must meet real plants */
+} PlantFrame;
+
+enum { frames_kept = 128 };
+
+/* A ray through lists of plants. */
+typedef struct ListRay {
+    const ForestFrame *frame;
+    PlantFrame        *kept; /* [frames_kept] of plants that earlier rays met */
+    bool               real;
+    double             o_enu[3], d_enu[3];
+    double             limit_m;             /* of what may still be nearer */
+    double             bend_per_m, piece_m; /* of a bent ray; where the piece that Embree has begins */
+    bool               met;
+    ForestHit          hit;
+} ListRay;
+
+/* The ray's first hit of a plant, where it is nearer than limit_m, or as near and of a lower place: true. */
+bool plant_first(ListRay *ray, const PlantList *list, uint32_t place);
+/* Whether the plant stops the ray before limit_m. */
+bool plant_stops(ListRay *ray, const PlantList *list, uint32_t place);
+/* Fills in what of a hit follows from its plant, quad and range. */
+void plant_complete(ListRay *ray, const PlantList *list);
+/* Axes and scales of a plant as it stands in a frame. */
+void plant_axes_in(double axis[3][3], double scale[2], const ForestFrame *frame, const Plant *plant);
 /* Whether a ray of a prototype's own axes meets it. */
 bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3]);
+/* Its first quad, and how far; o: about the middle of the prototype's box. False: none. */
+bool shape_first(uint32_t *quad, double *at_m, const ShapeScene *shape, const double o[3], const double d[3]);
+
+/* Unit of PlantList.bounds of a plant. */
+double plant_bounds_unit_m(const PlantList *list, const Plant *plant);
+/* Angle of a vector from x towards y, within 0.005 rad; 0, 0: 0. */
+double plant_rough_angle(double x, double y);
+
+/* ---- eight rays against a plant's table (forest_cards.c) ---------------------------------------- */
+
+enum { card_lanes = 8 };
+
+/* Rays that leave the frame's eye, or that go one way. */
+typedef struct CardRays {
+    const ForestFrame *frame;
+    const double      *way_enu; /* NULL: they leave the eye */
+    double             bend_per_m;
+    float              d[3][card_lanes], o[3][card_lanes]; /* o: about the list's origin; not of rays from the eye */
+    int32_t own_place[card_lanes], own_quad[card_lanes];   /* of the plant and the quad that a ray leaves; -1: none */
+} CardRays;
+
+/* A plant by its table: what is met on the way from the eye to its middle, or against the way of the rays. Metres of
+ * ENU to units of the table; the box outside which nothing counts. */
+typedef struct Card {
+    bool        real; /* it is met itself */
+    PlantTable *table;
+    int         way, level;
+    float       n[3], u[3], v[3]; /* depth in metres along the table's direction over the ray's; columns and rows */
+    float       at[3];            /* those of the eye, or of the plant's foot */
+    float       from[3];          /* from the plant's foot to the eye; or from the list's origin to the foot */
+    float       low[3], high[3];
+    float       unit, step_m; /* of depth; width of a texel of the finest level */
+} Card;
+
+void card_make(Card *card, const CardRays *rays, const PlantList *list, const Plant *plant);
+/* Those of the lanes that meet the plant; their ranges and quads. place: of the plant in its list. */
+unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const Card *card, const CardRays *rays,
+                    uint32_t place, unsigned lanes);
 
 /* low_plants.c */
 LowSquares      *low_squares_create(void); /* NULL: no memory */

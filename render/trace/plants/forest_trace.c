@@ -5,34 +5,8 @@
  * first hits (etc/reference/speed.md). */
 #include "render/trace/plants/forest_private.h"
 
-#include "pitviper_simd.h"
-
 static inline double smaller(double a, double b) { return a < b ? a : b; }
 static inline double larger(double a, double b) { return a > b ? a : b; }
-
-/* Where a plant stands and how it is turned: the same for every ray of a frame. */
-typedef struct PlantFrame {
-    F64x4        column[3], per; /* from ENU to the prototype's axes, and scales there; the fourth lane is 0 */
-    double       foot_enu[3];
-    const Plant *plant; /* NULL: not known */
-    bool         low;   /* in the picture: level 1 is traced unless the ray must meet real plants */
-} PlantFrame;
-
-enum { frames_kept = 128 };
-
-/* A ray through a list of plants. */
-typedef struct ListRay {
-    struct RTCIntersectContext base; /* first: Embree passes it to the callbacks */
-    const ForestFrame         *frame;
-    bool                       real;
-    double                     o_enu[3], d_enu[3];
-    double                     limit_m;             /* of what may still be nearer */
-    double                     bend_per_m, piece_m; /* of a bent ray; where the piece that Embree has begins */
-    bool                       met;
-    uint64_t                   entered; /* plants' boxes */
-    ForestHit                  hit;
-    PlantFrame                 kept[frames_kept]; /* of plants that earlier rays met */
-} ListRay;
 
 /* The ray in the axes of a prototype, about the middle of its box, beginning where it enters that box. */
 typedef struct QuadRay {
@@ -51,8 +25,7 @@ static void foot_of(double foot_enu[3], const PlantList *list, const Plant *plan
     for (int c = 0; c < 3; c++) foot_enu[c] = list->origin_enu[c] + (double)plant->p_m[c];
 }
 
-/* Axes and scales of a plant as it stands in this frame. */
-static void axes_of(double axis[3][3], double scale[2], const ForestFrame *frame, const Plant *plant)
+void plant_axes_in(double axis[3][3], double scale[2], const ForestFrame *frame, const Plant *plant)
 {
     double sway_rad[2];
     if (!(frame->forest->config.sway > 0)) {
@@ -70,7 +43,7 @@ static const PlantFrame *frame_of(ListRay *ray, const PlantList *list, const Pla
     if (f->plant == plant) return f;
     f->plant = plant;
     foot_of(f->foot_enu, list, plant);
-    axes_of(axis, scale, ray->frame, plant);
+    plant_axes_in(axis, scale, ray->frame, plant);
     for (int c = 0; c < 3; c++) f->column[c] = (F64x4){axis[0][c], axis[1][c], axis[2][c], 0};
     f->per = (F64x4){1 / scale[0], 1 / scale[0], 1 / scale[1], 0};
     f->low = forest_is_low_in_picture(ray->frame, plant, f->foot_enu);
@@ -218,6 +191,20 @@ static void fill_ray(struct RTCRay *ray, const double o[3], const double d[3], d
                            .mask = ~0u};
 }
 
+bool shape_first(uint32_t *quad, double *at_m, const ShapeScene *shape, const double o[3], const double d[3])
+{
+    struct RTCRayHit inner;
+    QuadRay          q = {.shape = shape, .limit_m = INFINITY, .nearest_m = INFINITY};
+    if (!shape->scene) return false;
+    memcpy(q.o, o, 3 * sizeof *o), memcpy(q.d, d, 3 * sizeof *d);
+    rtcInitIntersectContext(&q.base);
+    fill_ray(&inner.ray, q.o, q.d, INFINITY);
+    inner.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(shape->scene, &q.base, &inner);
+    *quad = q.quad, *at_m = q.nearest_m;
+    return q.nearest_m < INFINITY;
+}
+
 bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3])
 {
     struct RTCRay inner;
@@ -234,31 +221,27 @@ bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3
 
 static const double past = 1 + 1e-6; /* a float's distance may be that much short */
 
-void plant_intersect(const struct RTCIntersectFunctionNArguments *a)
+bool plant_first(ListRay *ray, const PlantList *list, uint32_t place)
 {
-    const PlantList *list = a->geometryUserPtr;
-    ListRay         *ray = (ListRay *)a->context;
     struct RTCRayHit inner;
     QuadRay          q;
     QuadPass         pass;
     double           start_m;
-    if (!a->valid[0]) return;
-    ray->entered++;
-    if (!enter_plant(&q, &start_m, ray, list, a->primID)) return;
+    if (!enter_plant(&q, &start_m, ray, list, place)) return false;
     rtcInitIntersectContext(&q.base);
     fill_ray(&inner.ray, q.o, q.d, q.limit_m * past);
     inner.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(q.shape->scene, &q.base, &inner);
     const double at_m = start_m + q.nearest_m;
-    if (!(q.nearest_m < INFINITY) || !(at_m <= ray->limit_m)) return;
-    if (at_m == ray->limit_m && !(ray->met && a->primID < ray->hit.place)) return;
-    const Plant     *plant = &list->plant[a->primID];
+    if (!(q.nearest_m < INFINITY) || !(at_m <= ray->limit_m)) return false;
+    if (at_m == ray->limit_m && !(ray->met && place < ray->hit.place)) return false;
+    const Plant     *plant = &list->plant[place];
     const PlantQuad *quad = &q.shape->shape->quad[q.quad];
     ray->limit_m = at_m;
     ray->met = true;
     ray->hit = (ForestHit){
-        .plant = list->number ? list->number[a->primID] : a->primID,
-        .place = a->primID,
+        .plant = list->number ? list->number[place] : place,
+        .place = place,
         .quad = q.quad,
         .kind = plant->kind,
         .organ = quad->organ,
@@ -266,146 +249,47 @@ void plant_intersect(const struct RTCIntersectFunctionNArguments *a)
         .back = (double)quad->n[0][0] * q.d[0] + (double)quad->n[0][1] * q.d[1] + (double)quad->n[0][2] * q.d[2] > 0};
     pass_of(&pass, &q, quad);
     place_of(ray->hit.uv, &pass, &q);
-    ((struct RTCRayHit *)a->rayhit)->ray.tfar = (float)((at_m - ray->piece_m) * past);
+    return true;
 }
 
-void plant_occlude(const struct RTCOccludedFunctionNArguments *a)
+bool plant_stops(ListRay *ray, const PlantList *list, uint32_t place)
 {
-    const PlantList *list = a->geometryUserPtr;
-    ListRay         *ray = (ListRay *)a->context;
-    struct RTCRay    inner;
-    QuadRay          q;
-    double           start_m;
-    if (!a->valid[0]) return;
-    ray->entered++;
-    if (!enter_plant(&q, &start_m, ray, list, a->primID)) return;
+    struct RTCRay inner;
+    QuadRay       q;
+    double        start_m;
+    if (!enter_plant(&q, &start_m, ray, list, place)) return false;
     rtcInitIntersectContext(&q.base);
     fill_ray(&inner, q.o, q.d, q.limit_m * past);
     rtcOccluded1(q.shape->scene, &q.base, &inner);
-    if (!(q.nearest_m < INFINITY)) return;
-    ray->met = true;
-    ((struct RTCRay *)a->ray)->tfar = -INFINITY;
+    ray->met |= q.nearest_m < INFINITY;
+    return q.nearest_m < INFINITY;
 }
 
-/* ---- rays ------------------------------------------------------------------------------------- */
-
-static void open_rays(ListRay *ray)
+/* The place on the quad is the point's, brought there across the quad: a table's range is not the quad's own. */
+void plant_complete(ListRay *ray, const PlantList *list)
 {
-    ray->entered = 0;
-    for (int k = 0; k < frames_kept; k++) ray->kept[k].plant = NULL;
-}
-
-/* False: a ray that Embree does not accept (not finite, or from too far), which meets nothing. */
-static bool open_ray(ListRay *ray, const ForestFrame *frame, const double *const o_enu[3], const double *const d_enu[3],
-                     int i, double limit_m, bool real)
-{
-    static const double most_m = 1e15;
-    rtcInitIntersectContext(&ray->base);
-    ray->frame = frame, ray->real = real, ray->limit_m = limit_m, ray->met = false;
-    ray->bend_per_m = ray->piece_m = 0;
-    for (int c = 0; c < 3; c++) ray->o_enu[c] = o_enu[c][i], ray->d_enu[c] = d_enu[c][i];
-    return v3_dot(ray->d_enu, ray->d_enu) < 2 &&
-           fabs(ray->o_enu[0]) + fabs(ray->o_enu[1]) + fabs(ray->o_enu[2]) < most_m;
-}
-
-static void start_of(double o[3], const ListRay *ray, const PlantList *list)
-{
-    v3_sub(o, ray->o_enu, list->origin_enu);
-}
-
-static void first_hit_straight(ListRay *ray, const PlantList *list)
-{
-    struct RTCRayHit outer;
-    double           o[3];
-    start_of(o, ray, list);
-    fill_ray(&outer.ray, o, ray->d_enu, ray->limit_m * past);
-    outer.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(list->scene, &ray->base, &outer);
-}
-
-/* Ranges between which a ray is over a list's plants. */
-static bool over_plants(double span_m[2], const ListRay *ray, const struct RTCBounds *b, const double o[3])
-{
-    static const double farthest_m = 1e7;
-    const double low[2] = {(double)b->lower_x, (double)b->lower_y}, high[2] = {(double)b->upper_x, (double)b->upper_y};
-    span_m[0] = 0, span_m[1] = smaller(ray->limit_m, farthest_m);
-    for (int c = 0; c < 2; c++) {
-        const double d = ray->d_enu[c], per = fabs(d) < 1e-30 ? 1e30 : 1 / d;
-        const double p = (low[c] - 1 - o[c]) * per, q = (high[c] + 1 - o[c]) * per;
-        span_m[0] = larger(span_m[0], smaller(p, q)), span_m[1] = smaller(span_m[1], larger(p, q));
-    }
-    return span_m[0] < span_m[1];
-}
-
-/* In straight pieces, each within less of the ray than plants' boxes have room: a chord of 1.6 km is 13 mm off at most.
- * A piece whose ends are above all plants is above them. */
-static void first_hit_bent(ListRay *ray, const PlantList *list, const struct RTCBounds *bounds)
-{
-    static const double piece_m = 1600, nearest = 1e-4;
-    const double        top_m = (double)bounds->upper_z + 1;
-    double              o[3], span_m[2];
-    start_of(o, ray, list);
-    if (!over_plants(span_m, ray, bounds, o)) return;
-    const double square = ray->d_enu[0] * ray->d_enu[0] + ray->d_enu[1] * ray->d_enu[1];
-    const double step_m = piece_m / larger(sqrt(square), nearest), fall = ray->bend_per_m * square;
-    for (double from_m = span_m[0]; from_m < smaller(span_m[1], ray->limit_m); from_m += step_m) {
-        struct RTCRayHit outer;
-        const double     to_m = smaller(from_m + step_m, span_m[1]);
-        const double     start[3] = {o[0] + from_m * ray->d_enu[0], o[1] + from_m * ray->d_enu[1],
-                                     o[2] + from_m * (ray->d_enu[2] - fall * from_m)};
-        const double     chord[3] = {ray->d_enu[0], ray->d_enu[1], ray->d_enu[2] - fall * (from_m + to_m)};
-        if (start[2] > top_m && o[2] + to_m * (ray->d_enu[2] - fall * to_m) > top_m) continue;
-        ray->piece_m = from_m;
-        fill_ray(&outer.ray, start, chord, (smaller(to_m, ray->limit_m) - from_m) * past);
-        outer.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(list->scene, &ray->base, &outer);
-    }
-}
-
-uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count,
-                           const double *const o_enu[3], const double *const d_enu[3], const uint8_t *real)
-{
-    const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
-    struct RTCBounds bounds[2];
-    ListRay          ray;
-    for (int k = 0; k < 2; k++)
-        if (lists[k] && lists[k]->scene) rtcGetSceneBounds(lists[k]->scene, &bounds[k]);
-    open_rays(&ray);
-    for (int i = 0; i < count; i++) {
-        if (!open_ray(&ray, frame, o_enu, d_enu, i, range_m[i], real && real[i])) continue;
-        ray.bend_per_m = frame->bend_per_m;
-        for (int k = 0; k < 2; k++) {
-            if (!lists[k] || !lists[k]->scene) continue;
-            if (frame->bend_per_m > 0) first_hit_bent(&ray, lists[k], &bounds[k]);
-            else first_hit_straight(&ray, lists[k]);
-        }
-        if (!ray.met) continue;
-        range_m[i] = ray.limit_m;
-        hit[i] = ray.hit;
-    }
-    return ray.entered;
-}
-
-uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, const double *const o_enu[3],
-                         const double *const d_enu[3], const double *far_m, const uint8_t *real)
-{
-    const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
-    ListRay          ray;
-    open_rays(&ray);
-    for (int i = 0; i < count; i++) {
-        if (dark[i]) continue;
-        if (!open_ray(&ray, frame, o_enu, d_enu, i, far_m[i], real && real[i])) continue;
-        for (int k = 0; k < 2 && !ray.met; k++) {
-            struct RTCRay outer;
-            double        o[3];
-            if (!lists[k] || !lists[k]->scene) continue;
-            start_of(o, &ray, lists[k]);
-            fill_ray(&outer, o, ray.d_enu, ray.limit_m * past);
-            rtcOccluded1(lists[k]->scene, &ray.base, &outer);
-        }
-        dark[i] = ray.met;
-    }
-    return ray.entered;
+    ForestHit        *hit = &ray->hit;
+    const Plant      *plant = &list->plant[hit->place];
+    const PlantFrame *stands = frame_of(ray, list, plant);
+    const PlantQuad  *quad = &list->forest->shape[plant->kind][0].shape->quad[hit->quad];
+    double            p[4] __attribute__((aligned(32))), d[4] __attribute__((aligned(32))), side[3];
+    QuadPlane         plane;
+    const double      m[3] = {ray->o_enu[0] - stands->foot_enu[0] + ray->limit_m * ray->d_enu[0],
+                              ray->o_enu[1] - stands->foot_enu[1] + ray->limit_m * ray->d_enu[1],
+                              ray->o_enu[2] - stands->foot_enu[2] + ray->limit_m * ray->d_enu[2]};
+    const double      east_m = ray->o_enu[0] - stands->foot_enu[0], north_m = ray->o_enu[1] - stands->foot_enu[1];
+    f64x4_store(p, turned(stands, m[0], m[1], m[2] - ray->bend_per_m * (east_m * east_m + north_m * north_m)));
+    f64x4_store(d, turned(stands, ray->d_enu[0], ray->d_enu[1], ray->d_enu[2]));
+    plane_of(&plane, quad);
+    const double square = v3_dot(plane.n, plane.n);
+    v3_sub(p, p, plane.a);
+    v3_cross(side, p, plane.v);
+    hit->uv[0] = (float)clamp(v3_dot(side, plane.n) / square, 0, 1);
+    v3_cross(side, plane.u, p);
+    hit->uv[1] = (float)clamp(v3_dot(side, plane.n) / square, 0, 1);
+    hit->plant = list->number ? list->number[hit->place] : hit->place;
+    hit->kind = plant->kind, hit->organ = quad->organ, hit->level = 0;
+    hit->back = (double)quad->n[0][0] * d[0] + (double)quad->n[0][1] * d[1] + (double)quad->n[0][2] * d[2] > 0;
 }
 
 /* ---- surfaces --------------------------------------------------------------------------------- */
@@ -445,7 +329,7 @@ void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHi
     const double      height_m = plant_height_m(plant);
     double            axis[3][3], scale[2], n[3];
     QuadPlane         plane;
-    axes_of(axis, scale, frame, plant);
+    plant_axes_in(axis, scale, frame, plant);
     const double per[2] = {1 / scale[0], 1 / scale[1]};
     plane_of(&plane, quad);
     turn_normal(out->n_geo, axis, per, plane.n);

@@ -54,6 +54,7 @@ static void plants_first(double *range_m, void *found, const TraceBlock *block, 
     const bool  simplified = forest_simplifies(plants.forest);
     const int   count = block->rays->count;
     uint8_t     real[hits_capacity];
+    plants.columns = block->rays->columns;
     if (block->rays->bent) plants.bend_per_m = block->v->seen.bend_per_m;
     memcpy(range_m, block->limit_m, (size_t)count * sizeof *range_m);
     if (block->v->full_plants) memset(real, 1, (size_t)count);
@@ -76,10 +77,12 @@ static void plants_finish(Hits *hits, const int *list, int count, const void *fo
         const double     o[3] = {block->o_enu[0][i], block->o_enu[1][i], block->o_enu[2][i] - drop_m};
         const double     d[3] = {block->d_enu[0][i], block->d_enu[1][i], block->d_enu[2][i]};
         ForestSurface    at;
+        block->counters->hits_by_table += hit->by_table;
         forest_surface(&at, plants, hit, o, d, range_m, (float)(range_m / plants->per_rad));
         visibility_store_normals(hits, i, at.n_geo, at.n_enu, d);
         hits->kind[i] = hit_plant;
         hits->instance[i] = hit->plant + 1;
+        hits->facet[i] = hit->level == 0 ? hit->quad : UINT32_MAX; /* tables are of level 0 */
         hits->albedo[i] = at.albedo;
         hits->radius_m[i] = at.radius_m;
         hits->open_up[i] = at.open_up;
@@ -97,18 +100,24 @@ static void plants_any(const TraceShadow *s, const void *self)
     const Visibility *v = s->v;
     double            start[3][hits_capacity], far_m[hits_capacity];
     uint8_t           dark[hits_capacity], real[hits_capacity];
+    uint32_t          place[hits_capacity], quad[hits_capacity];
     int               ray[hits_capacity], left = 0;
     for (int i = 0; i < s->count; i++) {
         if (s->dark[i] && skips(v->skips_off, SKIP_SUN_STOPPED)) continue;
         for (int c = 0; c < 3; c++) start[c][left] = s->o_enu[c][i];
         far_m[left] = INFINITY;
         dark[left] = 0;
-        real[left] = v->full_plants || s->hits->entity[s->hit_of[i]] != 0; /* on entities falls that of real plants */
+        const int hit = s->hit_of[i];
+        real[left] = v->full_plants || s->hits->entity[hit] != 0; /* on entities falls that of real plants */
+        const bool plant = s->hits->kind[hit] == hit_plant;
+        place[left] = plant ? s->hits->instance[hit] - 1 : UINT32_MAX;
+        quad[left] = plant ? s->hits->facet[hit] : UINT32_MAX;
         ray[left++] = i;
     }
     if (left == 0) return;
     const double *const o[3] = {start[0], start[1], start[2]};
-    s->counters->rays_sun_plants += forest_any_hits(dark, self, left, o, s->d_enu, far_m, real);
+    s->counters->rays_sun_plants +=
+        forest_any_hits(dark, self, left, o, s->d_enu, far_m, &(ForestLeft){real, place, quad});
     for (int k = 0; k < left; k++) s->dark[ray[k]] |= dark[k];
 }
 

@@ -267,6 +267,8 @@ static const Field counter_rows[] = {
     {"rays_parts", "", "", "", "rays tested against parts of entities", IN_RENDER(visibility.rays_parts)},
     {"rays_sun_ground", "", "", "", "shadow rays against the ground", IN_RENDER(visibility.rays_sun_ground)},
     {"rays_sun_parts", "", "", "", "shadow rays against parts of entities", IN_RENDER(visibility.rays_sun_parts)},
+    {"hits_by_table", "", "", "", "first hits of plants by tables (terrain.woods_tables)",
+     IN_RENDER(visibility.hits_by_table)},
     {"rays_sun_for_heat", "", "", "",
      "rays to the sun from plants that served their light and their temperature: so many were saved",
      IN_RENDER(visibility.rays_sun_for_heat)},

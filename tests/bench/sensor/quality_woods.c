@@ -11,14 +11,16 @@ static const double cleared_m = 6; /* about a vehicle */
 Status quality_woods_plant(Woods *woods, QualityMeasure *lab)
 {
     const Config       config = config_default();
-    const ForestConfig forest = {
-        .leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
-    const HeatConfig heat = heat_default_config();
-    WoodsStand       stand = {.landscape = &lab->ground,
-                              .east_m = quality_measure_east_m,
-                              .north_m = quality_measure_north_m,
-                              .trees = (int)(trees_per_m2 * quality_measure_east_m * quality_measure_north_m)};
-    Snapshot         snapshot;
+    const ForestConfig forest = {.leaves = true,
+                                 .level1_px = config.terrain.woods_level1_px,
+                                 .sway = config.terrain.woods_sway,
+                                 .tables = config.terrain.woods_tables};
+    const HeatConfig   heat = heat_default_config();
+    WoodsStand         stand = {.landscape = &lab->ground,
+                                .east_m = quality_measure_east_m,
+                                .north_m = quality_measure_north_m,
+                                .trees = (int)(trees_per_m2 * quality_measure_east_m * quality_measure_north_m)};
+    Snapshot           snapshot;
     arena_reset(lab->arena);
     Status status = entity_table_snapshot(&snapshot, lab->scene.table, lab->scene.sun_now_s + 0.5, lab->arena);
     for (int k = 0; status == STATUS_OK && k < snapshot.count && k < woods_stand_clear; k++) {
