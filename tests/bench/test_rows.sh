@@ -117,22 +117,22 @@ stability/sensor)
 woods)
     for view in "100 m up, 5 degrees down" "300 m up, 10 degrees down" "300 m up, 8 down, 6 wide" "1000 m up, 20 degrees down"; do
         rows "$view: one ray a pixel, full detail.*planes of one thread, nothing skipped\",yes,"
-        rows "$view: one ray a pixel, two levels.*planes of one thread, nothing skipped\",yes,"
+        rows "$view: one ray a pixel, tables.*planes of one thread, nothing skipped\",yes,"
         rows "$view: default quality, full detail" "$view: default quality: pixels sampled again"
-        for plane in red green blue "3-5 um" "8-12 um"; do rows "$view: two levels, $plane"; done
-        rows "$view: default quality, two levels" "$view: two levels: cover"
+        for plane in red green blue "3-5 um" "8-12 um"; do rows "$view: tables, $plane"; done
+        rows "$view: default quality, tables" "$view: tables: cover"
         for plane in red "3-5 um" "8-12 um"; do
             for figure in mean "one ray, blocks of 4 px" "one ray, blocks of 8 px" "structural error, blocks of 4 px" \
                 "contrast of a pixel, one ray" "contrast of a pixel" "autocorrelation length"; do
-                rows "$view: two levels, $plane: $figure"
+                rows "$view: tables, $plane: $figure"
             done
         done
     done
-    rows "memory: with frames of all views, full detail.*,yes," "woods: set-up of two levels" "memory: with a forest of two levels" \
-        "two levels: visible share of vehicles, as in frames" "two levels: visible share of vehicles, by its plants alone" \
-        "two levels, red: false alarms" "two levels, 8-12 um: false alarms" "two levels: vehicles by their surroundings: AUC" \
-        "two levels: told from full detail: AUC" "flight: two levels, red: change of representation, pixels" \
-        "flight: two levels, 8-12 um: change from frame to frame, blocks of 4 px" "flight: slowest frame over the median, two levels" ;;
+    rows "memory: with frames of all views, full detail.*,yes," "woods: set-up of tables" "memory: with a forest of tables" \
+        "tables: visible share of vehicles, as in frames" "tables: visible share of vehicles, by its plants alone" \
+        "tables, red: false alarms" "tables, 8-12 um: false alarms" "tables: vehicles by their surroundings: AUC" \
+        "tables: told from full detail: AUC" "flight: tables, red: change of representation, pixels" \
+        "flight: tables, 8-12 um: change from frame to frame, blocks of 4 px" "flight: slowest frame over the median, tables" ;;
 *) fail "no rows are known of $group" ;;
 esac
 
