@@ -21,7 +21,7 @@ typedef struct ForestConfig {
     double level1_px; /* a standing plant lower than this in the picture is traced at level 1; 0: never */
     double sway;      /* 0: plants stand still; 1: they sway by the wind of the frame */
     bool   tables;    /* rays from the frame's eye and to the sun meet standing plants that are lower in the picture
-                       * than forest_table_px in tables (plant_table.h) */
+                       * than forest_table_px in tables (forest_table.c) */
 } ForestConfig;
 
 /* woods and plants must outlive it. isa: as tracer_create. Memory: 140 octets or less a standing plant, Plant's own 20

@@ -64,7 +64,7 @@ typedef struct Visibility Visibility;
 typedef struct VisibilityCounters {
     uint64_t rays_ground, rays_parts, rays_sun_ground, rays_sun_parts; /* tests of each tracer */
     uint64_t rays_plants, rays_sun_plants;                             /* that entered some plant's box */
-    uint64_t hits_by_table;     /* first hits of plants by their tables (render/trace/plants/plant_table.h) */
+    uint64_t hits_by_table;     /* first hits of plants by their tables (render/trace/plants/forest_table.c) */
     uint64_t rays_sun_for_heat; /* rays to the sun that gave leaves their temperature, and light as well */
     uint64_t skipped_parts, skipped_sun_parts; /* ray x entity pairs proven empty */
     uint64_t skipped[SKIP_COUNT];              /* in the units of visibility_skip_what */

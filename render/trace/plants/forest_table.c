@@ -1,5 +1,12 @@
-/* render/trace/plants/plant_table.c: texels of tables, traced when they are asked for. */
-#include "render/trace/plants/plant_table.h"
+/* render/trace/plants/forest_table.c: what rays meet of a prototype, by table: for plants that are low in the picture.
+ *
+ * A table holds, for each of a set of directions and each texel of a square across it, the quad and the depth that one
+ * ray at a random place of the texel meets. A ray is looked up under the direction nearest to it, half a step off at
+ * most (5.6 degrees about the axis, 3.75 in elevation). Coarser levels hold one of the texels that they cover, chosen
+ * at random: a look-up of any level is one sample, with the statistics of a ray.
+ *
+ * A texel is traced when it is first asked for, and kept. It is a pure function of the prototype: neither the order of
+ * asking nor the thread that traces it shows. */
 #include "render/trace/plants/forest_private.h"
 
 #include <stdlib.h>
@@ -11,7 +18,7 @@ static const uint64_t seed = 0x7461626c65; /* of places within texels */
 
 /* ---- directions ------------------------------------------------------------------------------- */
 
-static void place_way(TableWay *out, const struct ShapeScene *shape, int way)
+static void place_way(TableWay *out, const ShapeScene *shape, int way)
 {
     const double up_rad = highest_rad - way / table_azimuths * row_rad;
     const double turn_rad = (way % table_azimuths + 0.5) * 2 * pi_rad / table_azimuths;
@@ -73,7 +80,7 @@ uint32_t plant_table_trace(PlantTable *table, int way, int level, int place)
 
 /* ---- tables ----------------------------------------------------------------------------------- */
 
-Status plant_table_create(PlantTable **out, const struct ShapeScene *shape)
+Status plant_table_create(PlantTable **out, const ShapeScene *shape)
 {
     if (shape->shape->quads + 2 > table_quad_mask) {
         log_error("forest: a prototype of %d quads has no table: %d are possible", shape->shape->quads,
