@@ -198,10 +198,11 @@ typedef struct Air {
     AirLimb  limb[AIR_BAND_COUNT];         /* below it, of an eye of ten metres and more */
     double   sun_eye_w_m2[AIR_BAND_COUNT]; /* direct irradiance at the eye: gives the radiance of the sun's visible
                                             * disc */
-    float above_w_m2_sr[2][air_above_steps + 1]; /* of mwir, lwir: what the air above the tables' top adds to a path
-                                                  * from an eye there; by the way's share of that to the edge */
-    double                  eye_height_m;        /* above the model's 0 km; any */
-    AirTable               *table;      /* in the arena of air_at; NULL: homogeneous atmosphere, see air_even */
+    float above_w_m2_sr[2][air_above_steps + 1];     /* of mwir, lwir: what the air above the tables' top adds to a path
+                                                      * from an eye there; by the way's share of that to the edge */
+    float     below_w_m2_sr[2][air_above_steps + 1]; /* likewise: the radiance of that path below the top */
+    double    eye_height_m;                          /* above the model's 0 km; any */
+    AirTable *table;                    /* in the arena of air_at; NULL: homogeneous atmosphere, see air_even */
     const struct HeatScene *heat;       /* of the ground (render/heat/heat.h); NULL: all of it as warm as the air */
     double                  even_per_m; /* extinction of a homogeneous atmosphere, whose radiance is that of its
                                          * sky */

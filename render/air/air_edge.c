@@ -14,6 +14,7 @@ void air_above_fill(Air *air)
 {
     const double eye_m = air->eye_height_m, edge_m = sqrt(eye_m * (2 * earth_radius_m + eye_m)), least = eye_m / edge_m;
     memset(air->above_w_m2_sr, 0, sizeof air->above_w_m2_sr);
+    memset(air->below_w_m2_sr, 0, sizeof air->below_w_m2_sr);
     if (!(eye_m > air_top_m)) return;
     for (int i = 0; i <= air_above_steps; i++) {
         const double  share = fmin(least + (1 - least) * i / air_above_steps, 1 - 1e-9), range_m = share * edge_m;
@@ -24,18 +25,24 @@ void air_above_fill(Air *air)
         DayPath far, near;
         air_day_path(&far, air->light.day, &whole);
         air_day_path(&near, air->light.day, &tabled);
-        for (int k = 0; k < 2; k++)
-            air->above_w_m2_sr[k][i] =
-                (float)((far.thermal_w_m2_sr[k] - near.thermal_w_m2_sr[k]) * air->light.thermal_scale[k]);
+        for (int k = 0; k < 2; k++) {
+            const double scale = air->light.thermal_scale[k];
+            air->above_w_m2_sr[k][i] = (float)((far.thermal_w_m2_sr[k] - near.thermal_w_m2_sr[k]) * scale);
+            air->below_w_m2_sr[k][i] = (float)(near.thermal_w_m2_sr[k] * scale);
+        }
     }
 }
 
-double air_above_there(const Air *air, int thermal, double climb)
+double air_above_there(const Air *air, int thermal, double climb, double path_w_m2_sr)
 {
     const double at = share_above(air->eye_height_m, climb);
     const int    i = at < air_above_steps ? (int)at : air_above_steps - 1;
-    const float *w = &air->above_w_m2_sr[thermal][i];
-    return (double)w[0] + (at - i) * (double)(w[1] - w[0]);
+    const float *w = &air->above_w_m2_sr[thermal][i], *of = &air->below_w_m2_sr[thermal][i];
+    const double more = (double)w[0] + (at - i) * (double)(w[1] - w[0]);
+    if (more >= 0) return more;
+    /* what it stops of warm air near the ground: of a path that ends aloft, in proportion */
+    const double whole = (double)of[0] + (at - i) * (double)(of[1] - of[0]);
+    return more * fmin(path_w_m2_sr / whole, 1);
 }
 
 /* ---- the edge ------------------------------------------------------------------------------------------- */

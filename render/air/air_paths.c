@@ -337,7 +337,8 @@ static void add_above(AirPaths *out, const Air *air, int thermal, const Hits *hi
         const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         if (out->range_m[i] < INFINITY && out->air_transmittance[i] < 1)
-            out->added_w_m2_sr[i] += (float)air_above_there(air, thermal, air_climb(o_enu, d_enu));
+            out->added_w_m2_sr[i] +=
+                (float)air_above_there(air, thermal, air_climb(o_enu, d_enu), (double)out->added_w_m2_sr[i]);
     }
 }
 

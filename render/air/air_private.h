@@ -118,10 +118,10 @@ struct AirTable {
 /* Paths by the tables, without rain, snow and fog; of hits count and range_m alone. */
 void air_paths_clear(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays,
                      const float *temp_k);
-/* Of an eye above the tables' top: fills in above_w_m2_sr; thermal radiance to add to a path by its rate of climb, of
- * mwir (thermal 0) and lwir. */
+/* Of an eye above the tables' top: fills in above_w_m2_sr and below_w_m2_sr; thermal radiance to add to a path of
+ * path_w_m2_sr by its rate of climb, of mwir (thermal 0) and lwir: together not below 0. */
 void   air_above_fill(Air *air);
-double air_above_there(const Air *air, int thermal, double climb);
+double air_above_there(const Air *air, int thermal, double climb, double path_w_m2_sr);
 /* Adds rain, snow and fog to paths by tables or without: droplets_paths.c. */
 void droplets_on_paths(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays);
 /* To a row of the sky over the ground, as air_day_sky gives it; thermal: mwir, lwir. */
