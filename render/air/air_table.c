@@ -97,13 +97,16 @@ static void put_curve(float *out, int stride, const Curve curve)
     for (int r = 0; r <= air_ranges; r++) out[r * stride] = curve[r];
 }
 
-/* From high up to a height: a longer path meets the ground. */
+/* A longer path to a height meets the ground; of eyes below high_m as far as leaves their octaves as they are, and
+ * without a step. */
 static double longest_path_m(const AirPath *path)
 {
-    static const double high_m = 1000;
-    if (path->observer_m < high_m) return INFINITY;
-    return sqrt(path->observer_m * (2 * earth_radius_m + path->observer_m)) +
-           sqrt(path->target_m * (2 * earth_radius_m + path->target_m));
+    static const double high_m = 1000, low_m = 100;
+    if (path->observer_m < low_m) return INFINITY;
+    const double more = fmax(high_m / path->observer_m, 1);
+    return more * more *
+           (sqrt(path->observer_m * (2 * earth_radius_m + path->observer_m)) +
+            sqrt(path->target_m * (2 * earth_radius_m + path->target_m)));
 }
 
 /* Of values at octaves of range, those beyond the longest path: the first of them is that path's, and becomes what the

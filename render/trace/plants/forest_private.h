@@ -53,7 +53,7 @@ typedef struct PlantTable {
     uint32_t         *level[table_levels]; /* [table_ways][side][side] */
 } PlantTable;
 
-/* Its memory, 23.5 MB, is the machine's only where it is asked for. STATUS_NO_MEMORY; STATUS_UNSUPPORTED: the prototype
+/* Its memory, 41.8 MB, is the machine's only where it is asked for. STATUS_NO_MEMORY; STATUS_UNSUPPORTED: the prototype
  * has too many quads. */
 Status plant_table_create(PlantTable **out, const ShapeScene *shape);
 void   plant_table_destroy(PlantTable *table); /* accepts NULL */
