@@ -3,7 +3,7 @@
 #include "tests/check.h"
 #include "tests/render/hand_plants.h"
 
-static const double calm[2] = {0, 0}, origin[3] = {0, 0, 0};
+static const double storm_mps[2] = {20, 0}, origin[3] = {0, 0, 0};
 
 enum { rays = 4096 };
 
@@ -16,15 +16,17 @@ typedef struct Stage {
     uint8_t     dark[rays];
 } Stage;
 
-static Stage by_table, by_plant;
+static Stage  by_table, by_plant;
+static double sway; /* of forests opened from now on, in a storm */
 
 static void open_stage(Stage *s, const Woods *woods, bool tables, const double eye_enu[3], double per_rad)
 {
-    const ForestConfig config = {.leaves = true, .tables = tables};
+    const ForestConfig config = {.leaves = true, .tables = tables, .sway = sway};
     s->arena = arena_create();
     assert_non_null(s->arena);
     assert_int_equal(forest_create(&s->forest, woods, &hand_plants, &config, "avx2"), STATUS_OK);
-    assert_int_equal(forest_frame_open(&s->frame, s->forest, eye_enu, per_rad, 0, 0, calm, NULL, s->arena), STATUS_OK);
+    assert_int_equal(forest_frame_open(&s->frame, s->forest, eye_enu, per_rad, 0, 0, storm_mps, NULL, s->arena),
+                     STATUS_OK);
 }
 
 static void close_stage(Stage *s)
@@ -126,14 +128,13 @@ static void coarse_texels(void **state)
 /* A level plate, 6 m wide and 6 m high, of plants turned every way, 200 m off and 30 degrees below the eye. A table's
  * hits lie on the plate but for half a step of direction over half the plate (0.35 m across, twice that along a ray
  * that comes in at 30 degrees) and a texel; as many rays meet it, and as far away in the mean. */
-static void plates(void **state)
+static void plates_in(void)
 {
     enum { turns = 64 };
     static Plant plant[turns];
     const double eye[3] = {0, 0, 6 + 200 * tan(30 * rad_per_deg)};
     double       apart = 0, apart2 = 0, most = 0;
     int          met[2] = {0}, both = 0;
-    (void)state;
     hand_grow(true, 0.06);
     for (int kind = 0; kind < PLANT_KINDS; kind++) {
         PlantShape *s = &hand_plants.shape[kind][0];
@@ -172,6 +173,15 @@ static void plates(void **state)
     CHECK_NEAR(met[0] / (double)met[1], 1, 0.02);
     CHECK(fabs(apart / both) < 0.03 && sqrt(apart2 / both) < 0.3 && most < 1);
     close_stage(&by_table), close_stage(&by_plant);
+}
+
+static void plates(void **state)
+{
+    (void)state;
+    plates_in();
+    sway = 3; /* plants lean by 0.1 rad and more, out of the boxes that they have when they stand still */
+    plates_in();
+    sway = 0;
 }
 
 /* Rays that must meet plants themselves, or that do not leave the eye, or rise too steeply, or meet plants that are

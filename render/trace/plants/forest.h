@@ -24,7 +24,7 @@ typedef struct ForestConfig {
                        * than forest_table_px in tables (forest_table.c) */
 } ForestConfig;
 
-/* woods and plants must outlive it. isa: as tracer_create. Memory: 140 octets or less a standing plant, Plant's own 20
+/* woods and plants must outlive it. isa: as tracer_create. Memory: 146 octets or less a standing plant, Plant's own 20
  * included. */
 Status forest_create(Forest **out, const Woods *woods, const Plants *plants, const ForestConfig *config,
                      const char *isa);

@@ -92,7 +92,7 @@ void plant_box(const struct RTCBoundsFunctionArguments *a)
     static const double room_m = 0.02; /* of a float 16 km from the origin, twenty times */
     const PlantList    *list = a->geometryUserPtr;
     const Plant        *plant = &list->plant[a->primID];
-    const double        swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
+    const double        swing_m = plant_swing_m(list, plant);
     float              *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
     double              low[3], high[3];
     bounds_by(low, high, list, plant, list->frame ? box_along : reach_along);

@@ -8,9 +8,7 @@
 /* Height in the picture from which a plant is met itself. */
 static double least_real_px(uint32_t place)
 {
-    uint32_t h = place * 0x9e3779b1u;
-    h = (h ^ h >> 15) * 0x85ebca77u;
-    return forest_table_px[0] + (forest_table_px[1] - forest_table_px[0]) * ((double)(h ^ h >> 13) * 0x1p-32);
+    return forest_table_px[0] + (forest_table_px[1] - forest_table_px[0]) * plant_rank(place);
 }
 
 /* The coarsest level whose texels are not wider than what one ray stands for. */
@@ -62,12 +60,12 @@ void card_make(Card *card, const CardRays *rays, const PlantList *list, const Pl
     }
     double at[3] = {-middle[0], half - half * middle[1], half - half * middle[2]};
     if (!rays->way_enu) at[0] += v3_dot(n, from), at[1] += v3_dot(u, from), at[2] += v3_dot(v, from);
-    const double  unit_m = plant_bounds_unit_m(list, plant);
+    const double  unit_m = plant_bounds_unit_m(list, plant), swing_m = plant_swing_m(list, plant);
     const int8_t *box = list->bounds[place];
     for (int c = 0; c < 3; c++) {
         card->at[c] = (float)at[c];
         card->from[c] = rays->way_enu ? plant->p_m[c] : (float)from[c];
-        card->low[c] = (float)(box[c] * unit_m), card->high[c] = (float)(box[3 + c] * unit_m);
+        card->low[c] = (float)(box[c] * unit_m - swing_m), card->high[c] = (float)(box[3 + c] * unit_m + swing_m);
     }
 }
 

@@ -2,8 +2,6 @@
  * them enter is met by its table, or itself. */
 #include "render/trace/plants/forest_private.h"
 
-static const double past = 1 + 1e-6; /* a float's distance may be that much short */
-
 enum { cards_kept = 1024 };
 
 /* What rays of a block have of the plants that they meet. */
@@ -59,6 +57,22 @@ static const Card *card_of(Packet *p, const PlantList *list, uint32_t place, uns
     return card->real ? NULL : card;
 }
 
+/* Rays of a packet that enter a plant's box. */
+typedef struct Visit {
+    Fields      of;
+    const Card *card;          /* NULL: by table nothing is met */
+    unsigned    tables, plant; /* lanes that meet it by table, and itself */
+} Visit;
+
+static Visit visit_of(Packet *p, const PlantList *list, uint32_t place, Fields of)
+{
+    const unsigned lanes = lanes_of(&of);
+    const Card    *card = card_of(p, list, place, lanes);
+    const unsigned tables = card ? lanes & p->by_table : 0;
+    p->entered += (uint64_t)__builtin_popcount(lanes);
+    return (Visit){of, card, tables, lanes & ~tables};
+}
+
 /* Lanes whose first hit is the table's. */
 static unsigned first_by_table(Packet *p, const Card *card, uint32_t place, unsigned lanes)
 {
@@ -82,46 +96,43 @@ void plant_intersect(const struct RTCIntersectFunctionNArguments *a)
 {
     const PlantList *list = a->geometryUserPtr;
     Packet          *p = (Packet *)a->context;
-    const Fields     f = fields_of(a->valid, a->N, a->rayhit);
-    const unsigned   lanes = lanes_of(&f);
-    const Card      *card = card_of(p, list, a->primID, lanes);
-    const unsigned   tables = card ? lanes & p->by_table : 0;
-    p->entered += (uint64_t)__builtin_popcount(lanes);
-    unsigned nearer = tables ? first_by_table(p, card, a->primID, tables) : 0;
-    for (unsigned left = lanes & ~tables; left; left &= left - 1) {
+    const Visit      v = visit_of(p, list, a->primID, fields_of(a->valid, a->N, a->rayhit));
+    unsigned         nearer = v.tables ? first_by_table(p, v.card, a->primID, v.tables) : 0;
+    for (unsigned left = v.plant; left; left &= left - 1) {
         const int l = __builtin_ctz(left);
         if (!plant_first(&p->ray[l], list, a->primID)) continue;
         nearer |= 1u << l, p->table_hit &= ~(1u << l);
     }
-    for (unsigned k = 0; nearer && k < f.n; k++) {
-        const ListRay *ray = &p->ray[f.id[k]];
-        if (f.valid[k] && nearer >> f.id[k] & 1) f.end_m[k] = (float)((ray->limit_m - ray->piece_m) * past);
+    for (unsigned k = 0; nearer && k < v.of.n; k++) {
+        const ListRay *ray = &p->ray[v.of.id[k]];
+        if (v.of.valid[k] && nearer >> v.of.id[k] & 1) v.of.end_m[k] = (float)((ray->limit_m - ray->piece_m) * past);
     }
+}
+
+static unsigned stopped_by_table(Packet *p, const Card *card, uint32_t place, unsigned lanes)
+{
+    float    range_m[card_lanes];
+    uint32_t quad[card_lanes];
+    unsigned stopped = 0;
+    for (unsigned met = card_meets(range_m, quad, card, &p->rays, place, lanes); met; met &= met - 1) {
+        const int l = __builtin_ctz(met);
+        if ((double)range_m[l] < p->ray[l].limit_m) p->ray[l].met = true, stopped |= 1u << l;
+    }
+    return stopped;
 }
 
 void plant_occlude(const struct RTCOccludedFunctionNArguments *a)
 {
     const PlantList *list = a->geometryUserPtr;
     Packet          *p = (Packet *)a->context;
-    const Fields     f = fields_of(a->valid, a->N, a->ray);
-    const unsigned   lanes = lanes_of(&f);
-    const Card      *card = card_of(p, list, a->primID, lanes);
-    const unsigned   tables = card ? lanes & p->by_table : 0;
-    float            range_m[card_lanes];
-    uint32_t         quad[card_lanes];
-    p->entered += (uint64_t)__builtin_popcount(lanes);
-    unsigned stopped = 0;
-    for (unsigned met = tables ? card_meets(range_m, quad, card, &p->rays, a->primID, tables) : 0; met;
-         met &= met - 1) {
-        const int l = __builtin_ctz(met);
-        if ((double)range_m[l] < p->ray[l].limit_m) p->ray[l].met = true, stopped |= 1u << l;
-    }
-    for (unsigned left = lanes & ~tables; left; left &= left - 1) {
+    const Visit      v = visit_of(p, list, a->primID, fields_of(a->valid, a->N, a->ray));
+    unsigned         stopped = v.tables ? stopped_by_table(p, v.card, a->primID, v.tables) : 0;
+    for (unsigned left = v.plant; left; left &= left - 1) {
         const int l = __builtin_ctz(left);
         if (plant_stops(&p->ray[l], list, a->primID)) stopped |= 1u << l;
     }
-    for (unsigned k = 0; stopped && k < f.n; k++)
-        if (f.valid[k] && stopped >> f.id[k] & 1) f.end_m[k] = -INFINITY;
+    for (unsigned k = 0; stopped && k < v.of.n; k++)
+        if (v.of.valid[k] && stopped >> v.of.id[k] & 1) v.of.end_m[k] = -INFINITY;
 }
 
 /* ---- packets ---------------------------------------------------------------------------------- */
@@ -193,9 +204,6 @@ static void first_straight(Packet *p, const PlantList *list, unsigned lanes)
     }
     rtcIntersect8(valid, list->scene, &p->base, &outer);
 }
-
-static inline double smaller(double a, double b) { return a < b ? a : b; }
-static inline double larger(double a, double b) { return a > b ? a : b; }
 
 /* Ranges between which a ray is over a list's plants. */
 static bool over_plants(double span_m[2], const ListRay *ray, const struct RTCBounds *b, const double o[3])

@@ -99,6 +99,19 @@ struct Forest {
     LowSquares   *squares;
 };
 
+/* A number in 0 .. 1 of a plant that its looks do not depend on. */
+static inline double plant_rank(uint32_t number)
+{
+    uint32_t h = number * 0x9e3779b1u;
+    h = (h ^ h >> 15) * 0x85ebca77u;
+    return (double)(h ^ h >> 13) * 0x1p-32;
+}
+
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+static inline double larger(double a, double b) { return a > b ? a : b; }
+
+static const double past = 1 + 1e-6; /* a float's distance may be that much short */
+
 /* A tree of boxes over a list. STATUS_NO_MEMORY. */
 Status plant_list_commit(PlantList *list, const struct Forest *forest, bool quick);
 void   plant_list_close(PlantList *list);
@@ -197,5 +210,10 @@ void             low_plants_close(ForestFrame *frame);
 const PlantList *low_plants_list(const ForestFrame *frame);
 
 static const double most_sway_rad = 0.2; /* of any plant in any wind: room in its box */
+/* That room. */
+static inline double plant_swing_m(const PlantList *list, const Plant *plant)
+{
+    return list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
+}
 
 #endif

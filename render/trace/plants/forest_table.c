@@ -74,7 +74,7 @@ uint32_t plant_table_trace(PlantTable *table, int way, int level, int place)
     uint32_t  texel = __atomic_load_n(at, __ATOMIC_RELAXED);
     if (texel != table_unset) return texel;
     texel = level == 0 ? trace(table, way, place) : plant_table_trace(table, way, 0, finest_of(way, level, place));
-    __atomic_store_n(at, texel, __ATOMIC_RELAXED); /* whoever traces it stores the same */
+    __atomic_store_n(at, texel, __ATOMIC_RELAXED); /* every thread that traces it stores the same */
     return texel;
 }
 

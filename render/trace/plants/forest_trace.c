@@ -5,9 +5,6 @@
  * first hits (etc/reference/speed.md). */
 #include "render/trace/plants/forest_private.h"
 
-static inline double smaller(double a, double b) { return a < b ? a : b; }
-static inline double larger(double a, double b) { return a > b ? a : b; }
-
 /* The ray in the axes of a prototype, about the middle of its box, beginning where it enters that box. */
 typedef struct QuadRay {
     struct RTCIntersectContext base;
@@ -218,8 +215,6 @@ bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3
 }
 
 /* ---- plants ----------------------------------------------------------------------------------- */
-
-static const double past = 1 + 1e-6; /* a float's distance may be that much short */
 
 bool plant_first(ListRay *ray, const PlantList *list, uint32_t place)
 {

@@ -77,14 +77,6 @@ typedef struct LowPlants {
     uint32_t          *numbers;
 } LowPlants;
 
-/* A number in 0 .. 1 of a plant that its looks do not depend on. */
-static double rank_of(uint32_t number)
-{
-    uint32_t h = number * 0x9e3779b1u;
-    h = (h ^ h >> 15) * 0x85ebca77u;
-    return (double)(h ^ h >> 13) * 0x1p-32;
-}
-
 /* Squares of a map of 1024 x 512 of them have numbers of their own. */
 static uint32_t number_of(int64_t i, int64_t j, int k)
 {
@@ -143,7 +135,7 @@ static void fill_square(void *user, int worker, int square)
         }
         const double share = sqrt(away2) / frame->low_reach_m;
         number[kept] = number_of(i, j, k);
-        if (2 * (1 - share) > rank_of(number[kept])) plant[kept++] = p;
+        if (2 * (1 - share) > plant_rank(number[kept])) plant[kept++] = p;
     }
     low->count[square] = kept;
 }
