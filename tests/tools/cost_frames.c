@@ -112,7 +112,7 @@ static Status plant_world(void)
 {
     const Config       config = config_default();
     const ForestConfig forest = {
-        .leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
+        .leaves = true, .fine = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
     WoodsStand stand = {.landscape = &stage.landscape, .east_m = east_m, .north_m = north_m, .trees = trees};
     for (int k = 0; k < type_count; k++)
         stand.clear[stand.clears++] = (WoodsPath){{40.0 * k - 80, 0}, {40.0 * k - 80, 0}, 6, 6};

@@ -46,25 +46,16 @@ void plant_box(const struct RTCBoundsFunctionArguments *a)
     static const double room_m = 0.02; /* of a float 16 km from the origin, twenty times */
     const PlantList    *list = a->geometryUserPtr;
     const Plant        *plant = &list->plant[a->primID];
-    const ShapeScene   *level[plant_levels] = {&list->forest->shape[plant->kind][0],
-                                               &list->forest->shape[plant->kind][1]};
+    const ShapeScene   *hull = &list->forest->hull[plant->kind];
     const double        swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
-    double              m[9], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double              m[9], low[3] = {0}, high[3] = {0};
     float              *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
     plant_transform(m, plant, NULL);
     double (*const reach)(const ShapeScene *, const double[3]) = list->frame ? box_along : reach_along;
-    for (int l = 0; l < plant_levels; l++) {
-        if (!level[l]->scene) continue;
-        for (int c = 0; c < 3; c++) {
-            const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
-            const double before = -reach(level[l], back) - room_m - swing_m,
-                         after = reach(level[l], along) + room_m + swing_m;
-            low[c] = before < low[c] ? before : low[c]; /* not fmin, which compiles to a call */
-            high[c] = after > high[c] ? after : high[c];
-        }
+    for (int c = 0; c < 3 && hull->azimuth; c++) { /* else a kind without quads */
+        const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
+        low[c] = -reach(hull, back) - room_m - swing_m, high[c] = reach(hull, along) + room_m + swing_m;
     }
-    for (int c = 0; c < 3; c++) /* of a kind without quads */
-        if (!(low[c] <= high[c])) low[c] = high[c] = 0;
     for (int c = 0; c < 3; c++) {
         bound[0][c] = (float)((double)plant->p_m[c] + low[c]);
         bound[1][c] = (float)((double)plant->p_m[c] + high[c]);

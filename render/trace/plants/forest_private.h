@@ -13,6 +13,7 @@ typedef struct ShapeScene {
     RTCScene           scene;
     const PlantShape  *shape;
     const LeafOutline *outline;            /* [plant_outlines] */
+    const LeafPattern *pattern;            /* [plant_outlines]; NULL: leaves have outlines */
     double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
     const double (*azimuth)[2];            /* unit vectors of azimuths, [shape_azimuths + 1] of the forest */
     double reach[shape_azimuths + 1];      /* how far it reaches towards azimuths from x to y, from its axis; the last
@@ -39,6 +40,7 @@ struct Forest {
     const Plants *plants;
     ForestConfig  config;
     ShapeScene    shape[PLANT_KINDS][plant_levels];
+    ShapeScene    hull[PLANT_KINDS]; /* box and reach that hold all its levels; nothing else. azimuth NULL: no quads */
     double        azimuth[shape_azimuths + 1][2];
     bool          borrows; /* their scenes */
     PlantList     standing;
@@ -51,8 +53,10 @@ void   plant_list_close(PlantList *list);
 
 /* How far a plant leans beyond its own lean, rad east and north. */
 void forest_sway(double sway_rad[2], const ForestFrame *frame, const Plant *plant, double x_m, double y_m);
-/* Whether a plant is so low in the picture that it is traced at level 1. */
-bool forest_is_low_in_picture(const ForestFrame *frame, const Plant *plant, const double foot_enu[3]);
+/* The level at which a plant is traced, by its height in the picture; for rays that must meet real plants: the finest.
+ */
+int               forest_level(const ForestFrame *frame, const Plant *plant, const double foot_enu[3]);
+static inline int forest_finest(const struct Forest *forest) { return forest->config.fine ? plant_fine : plant_whole; }
 
 /* Embree's callbacks of a list: user pointer is the PlantList. */
 void plant_box(const struct RTCBoundsFunctionArguments *a);
