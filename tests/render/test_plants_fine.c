@@ -36,8 +36,8 @@ static int grow(void **state)
     (void)state;
     const double before = resident_octets();
     for (int k = 0; k < PLANT_STANDING; k++)
-        plant[k] = (Plant){
-            .p_m = {(float)(apart_m * k), 0, 0}, .height = 100 * height_m, .width = 128, .kind = (uint8_t)k};
+        plant[k] =
+            (Plant){.p_m = {(float)(apart_m * k), 0, 0}, .height = 100 * height_m, .width = 128, .kind = (uint8_t)k};
     woods = (Woods){.nx = 1, .ny = 1, .first = first, .count = PLANT_STANDING, .plant = plant};
     if (plants_create(&plants, 1995, NULL) != STATUS_OK) return 1;
     for (int l = 0; l < levels_seen; l++) {
@@ -63,20 +63,20 @@ typedef struct Seen {
 
 typedef enum Way { AT_THE_TRUNK, ACROSS, DOWN } Way;
 
-/* Level rays from all around through the middle half of the crown's height: at the trunk, whose axis they pass within its
- * own wandering, or across eight tenths of the crown; or down on these. */
+/* Level rays from all around through the middle half of the crown's height: at the trunk, whose axis they pass within
+ * its own wandering, or across eight tenths of the crown; or down on these. */
 static Seen look(int kind, int which, Way way)
 {
     static const double calm[2] = {0, 0};
     static double       o[3][rays], d[3][rays], range_m[rays];
     static ForestHit    hit[rays];
     const double *const from[3] = {o[0], o[1], o[2]}, *const to[3] = {d[0], d[1], d[2]};
-    const PlantShape   *s = &plants->shape[kind][plant_whole];
-    const double        r_m = height_m * (double)s->crown_radius * (way == AT_THE_TRUNK ? 0.03 : 0.8);
-    const double        eye[3] = {apart_m * kind, -10, 0};
-    ForestFrame         frame;
-    Arena              *arena = arena_create();
-    Seen                seen = {0};
+    const PlantShape *s = &plants->shape[kind][plant_whole];
+    const double      r_m = height_m * (double)s->crown_radius * (way == AT_THE_TRUNK ? 0.03 : 0.8);
+    const double      eye[3] = {apart_m * kind, -10, 0};
+    ForestFrame       frame;
+    Arena            *arena = arena_create();
+    Seen              seen = {0};
     assert_int_equal(forest_frame_open(&frame, forest[which], eye, 1000, 0, 0, calm, NULL, arena), STATUS_OK);
     for (int i = 0; i < rays; i++) {
         const double turn = 2 * pi_rad * random_uniform(5, 1, 0, (uint64_t)i), c = cos(turn), b = sin(turn);
@@ -132,9 +132,10 @@ static void the_same_leaf_area(void **state)
     }
 }
 
-/* Lengths of leaves of the species at their usual heights (etc/woods.csv), m: Stace, New Flora of the British Isles, 4th
- * ed., and Flora of North America: pine needles 4 .. 7 cm, alder 4 .. 9, birch 3 .. 7, English and sessile oak 7 .. 12,
- * red oak 8 .. 22, white oak 8 .. 22; bushes and hedges (hazel, hawthorn) 2 .. 12 cm. No leaf is longer than 0.15 m. */
+/* Lengths of leaves of the species at their usual heights (etc/woods.csv), m: Stace, New Flora of the British Isles,
+ * 4th ed., and Flora of North America: pine needles 4 .. 7 cm, alder 4 .. 9, birch 3 .. 7, English and sessile oak 7 ..
+ * 12, red oak 8 .. 22, white oak 8 .. 22; bushes and hedges (hazel, hawthorn) 2 .. 12 cm. No leaf is longer than 0.15
+ * m. */
 static void leaves_of_their_size(void **state)
 {
     static const double usual_m[PLANT_STANDING] = {20, 18, 18, 18, 18, 18, 18, 2.2, 1.6};
@@ -147,11 +148,11 @@ static void leaves_of_their_size(void **state)
         int               count = 0;
         for (int k = s->bark_quads; k < s->quads; k++) {
             const LeafPattern *p = &plants->pattern[kind][s->quad[k].outline];
-            const double       u_m = side_m(&s->quad[k], 1) * usual_m[kind], v_m = side_m(&s->quad[k], 3) * usual_m[kind];
-            const int          leaves = kind == PLANT_PINE ? p->leaflets : p->leaflets - 1; /* the last is the twig */
+            const double u_m = side_m(&s->quad[k], 1) * usual_m[kind], v_m = side_m(&s->quad[k], 3) * usual_m[kind];
+            const int    leaves = kind == PLANT_PINE ? p->leaflets : p->leaflets - 1; /* the last is the twig */
             for (int l = 0; l < leaves; l++) {
-                const double leaf_m = hypot((double)(p->tip[l][0] - p->foot[l][0]) * u_m,
-                                            (double)(p->tip[l][1] - p->foot[l][1]) * v_m);
+                const double leaf_m =
+                    hypot((double)(p->tip[l][0] - p->foot[l][0]) * u_m, (double)(p->tip[l][1] - p->foot[l][1]) * v_m);
                 sum += leaf_m, count++, longest = fmax(longest, leaf_m);
             }
         }
@@ -170,8 +171,9 @@ static void texture(void **state)
         int               count = 0, differ = 0;
         float             before = 0;
         for (int n = 0; n < 40000; n++) {
-            const int   k = s->bark_quads + (int)(random_uniform(6, 1, 0, (uint64_t)n / 2) * s->leaves);
-            const float uv[2] = {(float)random_uniform(6, 2, 0, (uint64_t)n), (float)random_uniform(6, 3, 0, (uint64_t)n)};
+            const int        k = s->bark_quads + (int)(random_uniform(6, 1, 0, (uint64_t)n / 2) * s->leaves);
+            const float      uv[2] = {(float)random_uniform(6, 2, 0, (uint64_t)n),
+                                      (float)random_uniform(6, 3, 0, (uint64_t)n)};
             const PlantQuad *q = &s->quad[k];
             if (plants_leaflet(&plants->pattern[kind][q->outline], uv[0], uv[1]) == 0) continue;
             const LeafPlace at = plants_leaf_place(plants, (PlantKind)kind, 7, q, (uint32_t)k, uv);
@@ -202,8 +204,8 @@ static void gaps_of_crowns(void **state)
         }
 }
 
-/* Leaves that a level ray from the trunk to afar meets in the mean, in the middle half of the crown's height: of leaf area a
- * at radius r the share |n.r| / (2 pi r) of each height. */
+/* Leaves that a level ray from the trunk to afar meets in the mean, in the middle half of the crown's height: of leaf
+ * area a at radius r the share |n.r| / (2 pi r) of each height. */
 static double leaves_before_the_trunk(int kind)
 {
     const PlantShape *s = &plants->shape[kind][plant_fine];
@@ -213,7 +215,8 @@ static double leaves_before_the_trunk(int kind)
         const PlantQuad *q = &s->quad[k];
         double           m[3];
         for (int x = 0; x < 3; x++) m[x] = 0.5 * ((double)q->corner[0][x] + (double)q->corner[2][x]);
-        const double r = fmax(hypot(m[0], m[1]), 0.01), facing = fabs((double)q->n[0][0] * m[0] + (double)q->n[0][1] * m[1]) / r;
+        const double r = fmax(hypot(m[0], m[1]), 0.01),
+                     facing = fabs((double)q->n[0][0] * m[0] + (double)q->n[0][1] * m[1]) / r;
         const double area = side_m(q, 1) * side_m(q, 3) * (double)plants->pattern[kind][q->outline].area;
         if (fabs(m[2] - crown - 0.5 * high) < 0.25 * high) sum += area * facing / (2 * pi_rad * r * 0.5 * high);
     }
@@ -221,7 +224,8 @@ static double leaves_before_the_trunk(int kind)
 }
 
 /* What shows of the trunk among the leaves, of what branches leave to be seen: exp(-c N) of N leaves in the way, with a
- * clumping index c of 0.5 .. 0.95 in forests (Chen, Menges & Leblanc, Remote Sens. Environ. 97, 447, 2005); 1 at random. */
+ * clumping index c of 0.5 .. 0.95 in forests (Chen, Menges & Leblanc, Remote Sens. Environ. 97, 447, 2005); 1 at
+ * random. */
 static void crowns_hide_trunks(void **state)
 {
     (void)state;
@@ -284,8 +288,12 @@ static void kept(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_same_leaf_area), cmocka_unit_test(leaves_of_their_size), cmocka_unit_test(texture),
-        cmocka_unit_test(gaps_of_crowns),     cmocka_unit_test(crowns_hide_trunks),   cmocka_unit_test(memory),
+        cmocka_unit_test(the_same_leaf_area),
+        cmocka_unit_test(leaves_of_their_size),
+        cmocka_unit_test(texture),
+        cmocka_unit_test(gaps_of_crowns),
+        cmocka_unit_test(crowns_hide_trunks),
+        cmocka_unit_test(memory),
         cmocka_unit_test(kept),
     };
     return cmocka_run_group_tests(tests, grow, fell);

@@ -1,8 +1,14 @@
-/* render/trace/plants/forest_openness.c: how much even light from above and from below reaches each quad past its own plant,
- * by rays through the prototype. */
+/* render/trace/plants/forest_openness.c: how much even light from above and from below reaches each quad past its own
+ * plant, by rays through the prototype. */
 #include "render/trace/plants/forest_private.h"
 
-enum { quads_a_task = 256, leaf_rays = 12 /* a side */, bark_rays = 8, fine_leaf_rays = 1 /* a side */, fine_bark_rays = 2 };
+enum {
+    quads_a_task = 256,
+    leaf_rays = 12 /* a side */,
+    bark_rays = 8,
+    fine_leaf_rays = 1 /* a side */,
+    fine_bark_rays = 2
+};
 
 typedef struct Opening {
     const ShapeScene *scene;
@@ -84,7 +90,8 @@ void forest_openness(Plants *plants, const Forest *forest, Pool *pool)
     for (int kind = 0; kind < PLANT_KINDS; kind++)
         for (int level = forest_finest(forest); level < plant_levels; level++) {
             const bool shared = level == plant_fine && kind < plants->patterned;
-            Opening    o = {&forest->shape[kind][level], &plants->shape[kind][level], {bark_rays, leaf_rays, bark_rays}, shared};
+            Opening    o = {
+                   &forest->shape[kind][level], &plants->shape[kind][level], {bark_rays, leaf_rays, bark_rays}, shared};
             if (shared) o.rays[PLANT_BARK] = fine_bark_rays, o.rays[PLANT_LEAF] = fine_leaf_rays;
             const int tasks = (o.shape->quads + quads_a_task - 1) / quads_a_task;
             if (pool) pool_run(pool, tasks, open_quads, &o);

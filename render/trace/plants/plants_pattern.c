@@ -1,5 +1,5 @@
-/* render/trace/plants/plants_pattern.c: several leaves on a twig, drawn into the cells of a card, and what a place on one
- * of them looks like.
+/* render/trace/plants/plants_pattern.c: several leaves on a twig, drawn into the cells of a card, and what a place on
+ * one of them looks like.
  *
  * A leaf has the outline of its species (plants_surface.c) and 0.45 of the card's length; leaves stand in turn on both
  * sides of a twig that ends in one. Pines have needles on both sides. A cell is 1.2 to 1.9 mm wide at the kinds' usual
@@ -52,7 +52,8 @@ static void draw_leaf(LeafPattern *out, int leaf, const LeafOutline *outline)
         for (int i = x[0]; i < x[1]; i++) {
             const double p[2] = {(i + 0.5) / plant_pattern_side - (double)foot[0],
                                  (j + 0.5) / plant_pattern_side - (double)foot[1]};
-            const double v = (p[0] * way[0] + p[1] * way[1]) / square, u = 0.5 + (p[0] * way[1] - p[1] * way[0]) / square;
+            const double v = (p[0] * way[0] + p[1] * way[1]) / square,
+                         u = 0.5 + (p[0] * way[1] - p[1] * way[0]) / square;
             if (plants_within_outline(outline, (float)u, (float)v)) out->leaflet[j][i] = (uint8_t)leaf;
         }
 }
@@ -91,7 +92,8 @@ static void leaves_of(LeafPattern *out, PlantKind kind, int which, uint64_t seed
         const double foot[2] = {0.5 + bend * up, up + (last ? 0 : dice(kind, which, seed, 10 + k, -0.02, 0.02))};
         const double angle = last ? dice(kind, which, seed, 20, -0.2, 0.2)
                                   : side * dice(kind, which, seed, 20 + k, 0.85, 1.35) * (1 - 0.35 * up);
-        place_leaf(out, k + 1, foot, angle, leaf_length * dice(kind, which, seed, 30 + k, 0.8, 1.05) * (last ? 0.95 : 1));
+        place_leaf(out, k + 1, foot, angle,
+                   leaf_length * dice(kind, which, seed, 30 + k, 0.8, 1.05) * (last ? 0.95 : 1));
         plant_outline(&outline, kind, (which + k) % plant_outlines, seed);
         draw_leaf(out, k + 1, &outline);
     }
@@ -127,8 +129,8 @@ void plant_pattern(LeafPattern *out, PlantKind kind, int which, uint64_t seed)
 
 /* ---- what is seen of them --------------------------------------------------------------------- */
 
-LeafPlace plants_leaf_place(const Plants *plants, PlantKind kind, uint32_t plant, const PlantQuad *quad, uint32_t number,
-                            const float uv[2])
+LeafPlace plants_leaf_place(const Plants *plants, PlantKind kind, uint32_t plant, const PlantQuad *quad,
+                            uint32_t number, const float uv[2])
 {
     static const double tone = 0.12, along = 0.16, tilt = 0.45, fold = 0.3;
     const LeafPattern  *pattern = &plants->pattern[kind][quad->outline];

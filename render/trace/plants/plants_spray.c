@@ -1,8 +1,9 @@
-/* render/trace/plants/plants_spray.c: the finest level: a spray of plant_whole dissolved into small cards about a shoot.
+/* render/trace/plants/plants_spray.c: the finest level: a spray of plant_whole dissolved into small cards about a
+ * shoot.
  *
- * A card of plant_whole stands for a shoot with some dozens of leaves. Here the leaves stand about the shoot's axis, by the
- * golden angle, on cards of a few leaves each whose size is the species' own at the kind's usual height; as many as the
- * spray has leaf area. */
+ * A card of plant_whole stands for a shoot with some dozens of leaves. Here the leaves stand about the shoot's axis, by
+ * the golden angle, on cards of a few leaves each whose size is the species' own at the kind's usual height; as many as
+ * the spray has leaf area. */
 #include "render/trace/plants/plants_private.h"
 
 typedef struct SprayForm {
@@ -13,8 +14,8 @@ typedef struct SprayForm {
     double open;    /* of the cards, from the shoot's axis, rad */
 } SprayForm;
 
-/* Leaves of field guides: alder 4 .. 9 cm, birch 3 .. 6, English and sessile oak 7 .. 14, red and white oak 10 .. 20; needles
- * of pine 4 .. 7. */
+/* Leaves of field guides: alder 4 .. 9 cm, birch 3 .. 6, English and sessile oak 7 .. 14, red and white oak 10 .. 20;
+ * needles of pine 4 .. 7. */
 static const SprayForm spray_form[PLANT_STANDING] = {
     [PLANT_PINE] = {20, 0.16, 1.0, 0.45, 0.7},       [PLANT_ALDER] = {18, 0.18, 0.9, 0.7, 1.0},
     [PLANT_BIRCH] = {18, 0.15, 0.9, 0.7, 0.9},       [PLANT_ENGLISH_OAK] = {18, 0.20, 0.9, 0.7, 1.0},
