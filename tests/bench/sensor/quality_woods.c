@@ -12,7 +12,7 @@ Status quality_woods_plant(Woods *woods, QualityMeasure *lab)
 {
     const Config       config = config_default();
     const ForestConfig forest = {
-        .leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
+        .leaves = true, .fine = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
     const HeatConfig heat = heat_default_config();
     WoodsStand       stand = {.landscape = &lab->ground,
                               .east_m = quality_measure_east_m,

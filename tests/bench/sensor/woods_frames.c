@@ -113,7 +113,7 @@ static Status make_woods(WoodsBench *w)
 
 static Status make_forest(WoodsBench *w, int detail)
 {
-    const ForestConfig config = {.leaves = true, .level1_px = detail ? w->level1_px : 0};
+    const ForestConfig config = {.leaves = true, .fine = true, .level1_px = detail ? w->level1_px : 0};
     World             *world = &w->scene.world;
     const double       start_s = wall_clock_s();
     bench_progress(w->bench, "trees of boxes");
