@@ -57,17 +57,19 @@ Status world_need_patches(const World *world, const Snapshot *snapshot)
 }
 
 /* The prototypes, with what even light reaches each quad where they come from the cache: *whole. */
-static Status need_plants(bool *whole, World *world, CacheKey *key, bool leaves, const char *isa, Pool *pool)
+static Status need_plants(bool *whole, World *world, CacheKey *key, const ForestConfig *config, const char *isa,
+                          Pool *pool)
 {
     static const uint64_t seed = 1995; /* the prototypes are the same in every world */
     const int64_t         embree = tracer_embree(world->tracer);
-    const uint8_t         with_leaves = leaves; /* bare trees let more light through to their bark */
-    void                 *octets;
-    size_t                count;
-    *key = cache_key("plants");
+    /* bare trees let more light through to their bark; light at the finest level is found where it is traced */
+    const uint8_t with[2] = {config->leaves, config->fine};
+    void         *octets;
+    size_t        count;
+    *key = cache_key("plants of three levels");
     cache_key_add(key, &seed, sizeof seed);
     cache_key_add(key, &embree, sizeof embree);
-    cache_key_add(key, &with_leaves, sizeof with_leaves);
+    cache_key_add(key, with, sizeof with);
     if (isa) cache_key_add(key, isa, strlen(isa));
     *whole = false;
     if (cache_fetch(&octets, &count, world->cache, key)) {
@@ -101,7 +103,7 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
         return STATUS_BAD_VALUE;
     }
     Status status = materials_add_plants(&world->materials, optics, ground);
-    if (status == STATUS_OK) status = need_plants(&whole, world, &key, config->leaves, isa, pool);
+    if (status == STATUS_OK) status = need_plants(&whole, world, &key, config, isa, pool);
     if (status == STATUS_OK) status = forest_create(&world->forest, woods, world->plants, config, isa);
     if (status != STATUS_OK) return status;
     if (!whole) finish_plants(world, &key, pool);

@@ -57,7 +57,7 @@ typedef struct Sum {
 static void add_plant(Sum *sum, const Canopy *c, const Woods *woods, const Plants *plants, const Plant *plant,
                       bool leaves)
 {
-    const PlantShape *shape = &plants->shape[plant->kind][0];
+    const PlantShape *shape = &plants->shape[plant->kind][plant_whole];
     const double      height_m = plant_height_m(plant), wide = plant->width / 128.0;
     const double      area = (double)shape->leaf_area * height_m * height_m * wide;
     const double      r = (double)shape->crown_radius * height_m * wide;
@@ -99,7 +99,7 @@ static double quad_area(const PlantQuad *q)
 
 static Crown crown_of(const Plants *plants, PlantKind kind, bool leaves)
 {
-    const PlantShape *s = &plants->shape[kind][0];
+    const PlantShape *s = &plants->shape[kind][plant_whole];
     Crown             crown = {0};
     for (int k = 0; k < s->quads; k++) {
         const PlantQuad *q = &s->quad[k];

@@ -64,6 +64,7 @@ Cache *frame_world_cache(const Config *config)
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool)
 {
     const ForestConfig forest = {.leaves = config->terrain.woods_leaves,
+                                 .fine = true,
                                  .level1_px = config->terrain.woods_level1_px,
                                  .sway = config->terrain.woods_sway,
                                  .tables = config->terrain.woods_tables};

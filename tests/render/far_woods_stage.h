@@ -104,7 +104,7 @@ static Status       canopy_by_hand(Canopy **out)
         rows[row_leaf].rho[c] = 0.5f, rows[row_leaf].tau[c] = 0.3f, rows[row_bark].rho[c] = 0.2f;
     for (int kind = 0; kind < PLANT_KINDS; kind++) {
         materials.plant[kind][PLANT_LEAF] = row_leaf, materials.plant[kind][PLANT_BARK] = row_bark;
-        plants->shape[kind][0] = (PlantShape){.quads = 2, .quad = quad, .bark_quads = 1};
+        plants->shape[kind][plant_whole] = (PlantShape){.quads = 2, .quad = quad, .bark_quads = 1};
         for (int o = 0; o < plant_outlines; o++) plants->outline_area[kind][o] = 1;
     }
     return canopy_create(out, &woods, plants, &materials, true);

@@ -9,8 +9,9 @@
 
 enum { hand_branches = 12, hand_leaves = 150, hand_quads = 6 * hand_branches + hand_leaves };
 
-static PlantQuad hand_quad[PLANT_KINDS][plant_levels][hand_quads];
-static Plants    hand_plants;
+static PlantQuad   hand_quad[PLANT_KINDS][plant_levels][hand_quads];
+static LeafPattern hand_pattern[PLANT_STANDING][plant_outlines];
+static Plants      hand_plants = {.patterned = PLANT_STANDING, .pattern = hand_pattern};
 
 static double hand_dice(uint32_t stream, uint64_t index) { return random_uniform(77, stream, 0, index); }
 
@@ -75,11 +76,24 @@ static inline void hand_grow(bool whole, double size)
                     out->uv[k][c] = whole ? (float)((c == 0 ? k == 1 || k == 2 : k >= 2)) : diamond[k][c];
             hand_plants.outline_area[kind][o] = whole ? 1 : 0.5f;
         }
+        for (int o = 0; o < plant_outlines && kind < PLANT_STANDING; o++) { /* two leaves: stripes along the card */
+            LeafPattern *out = &hand_plants.pattern[kind][o];
+            out->leaflets = 2, out->area = 0.5f;
+            for (int j = 0; j < plant_pattern_side; j++)
+                for (int i = 0; i < plant_pattern_side; i++)
+                    out->leaflet[j][i] = (uint8_t)(i * 4 / plant_pattern_side == o % 4         ? 1
+                                                   : i * 4 / plant_pattern_side == (o + 2) % 4 ? 2
+                                                                                               : 0);
+            for (int l = 0; l < 2; l++) {
+                out->foot[l][0] = out->tip[l][0] = 0.25f * ((float)((o + 2 * l) % 4) + 0.5f);
+                out->foot[l][1] = 0, out->tip[l][1] = 1;
+            }
+        }
         for (int level = 0; level < plant_levels; level++) {
             PlantShape *s = &hand_plants.shape[kind][level];
             PlantQuad  *q = hand_quad[kind][level];
-            const int   branches = level ? hand_branches / 3 : hand_branches,
-                      leaves = level ? hand_leaves / 5 : hand_leaves;
+            const int   branches = level == plant_simple ? hand_branches / 3 : hand_branches,
+                      leaves = level == plant_simple ? hand_leaves / 5 : hand_leaves;
             const uint64_t of = (uint64_t)kind * 1000;
             hand_prism(q, (const double[3]){0, 0, 0}, (const double[3]){0.01, 0, 0.7}, 0.03, 0.01, 0);
             for (int b = 1; b < branches; b++) {
@@ -93,7 +107,7 @@ static inline void hand_grow(bool whole, double size)
                 hand_plant_direction(n, 3, of + (uint64_t)l);
                 hand_plant_direction(at, 4, of + (uint64_t)l);
                 for (int c = 0; c < 3; c++) at[c] = 0.28 * at[c] + (c == 2 ? 0.7 : 0);
-                hand_leaf(q + 6 * branches + l, at, n, level ? size * 2 : size, l);
+                hand_leaf(q + 6 * branches + l, at, n, level == plant_simple ? size * 2 : size, l);
             }
             *s = (PlantShape){.quads = 6 * branches + leaves,
                               .pieces = branches,
@@ -102,7 +116,8 @@ static inline void hand_grow(bool whole, double size)
                               .bark_quads = 6 * branches,
                               .crown_low = 0.4f,
                               .crown_radius = 0.28f,
-                              .leaf_area = (float)(leaves * size * size * (level ? 4 : 1) * (whole ? 1 : 0.5))};
+                              .leaf_area =
+                                  (float)(leaves * size * size * (level == plant_simple ? 4 : 1) * (whole ? 1 : 0.5))};
             for (int c = 0; c < 3; c++) s->low[c] = INFINITY, s->high[c] = -INFINITY;
             for (int k = 0; k < s->quads; k++)
                 for (int c = 0; c < 12; c++) {

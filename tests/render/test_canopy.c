@@ -21,7 +21,7 @@ static int open_orchard(void **state)
     prototypes = calloc(1, sizeof *prototypes);
     if (!prototypes) return -1;
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        prototypes->shape[kind][0] =
+        prototypes->shape[kind][plant_whole] =
             (PlantShape){.leaf_area = (float)leaf_area, .crown_low = (float)crown_low, .crown_radius = 0.25f};
     woods = (Woods){.by_kind = {[PLANT_BIRCH] = side * side},
                     .origin_enu = {-160, -160, 100},
@@ -121,7 +121,7 @@ static Canopy *canopy_of(double rho, double tau, double bark, double up, double 
                               .open_down = (float)down};
     for (int kind = 0; kind < PLANT_KINDS; kind++) {
         materials.plant[kind][PLANT_LEAF] = 1, materials.plant[kind][PLANT_BARK] = 2;
-        prototypes->shape[kind][0].quad = quad, prototypes->shape[kind][0].quads = 2;
+        prototypes->shape[kind][plant_whole].quad = quad, prototypes->shape[kind][plant_whole].quads = 2;
         for (int o = 0; o < plant_outlines; o++) prototypes->outline_area[kind][o] = 1;
     }
     assert_int_equal(canopy_create(&c, &woods, prototypes, &materials, true), STATUS_OK);

@@ -40,8 +40,10 @@ static int open_woods(void **state)
         const bool pine = kind == PLANT_PINE;
         quads[kind][0] = pine ? quad(PLANT_BARK, 1, 0.4, 0.4) : quad(PLANT_BARK, 2, 0.2, 0.6);
         quads[kind][1] = pine ? quad(PLANT_LEAF, 2, 0.6, 0.2) : quad(PLANT_LEAF, 4, 0.5, 0.3);
-        plants->shape[kind][0] = (PlantShape){.quads = 2, .quad = quads[kind], .bark_quads = 1, .leaf_area = 3.6f};
-        plants->shape[kind][0].crown_low = pine ? 0.5f : 0.25f, plants->shape[kind][0].crown_radius = 0.375f;
+        plants->shape[kind][plant_whole] =
+            (PlantShape){.quads = 2, .quad = quads[kind], .bark_quads = 1, .leaf_area = 3.6f};
+        plants->shape[kind][plant_whole].crown_low = pine ? 0.5f : 0.25f,
+        plants->shape[kind][plant_whole].crown_radius = 0.375f;
         for (int o = 0; o < plant_outlines; o++) plants->outline_area[kind][o] = o != 1 ? 9 : pine ? 0.5f : 0.8f;
         materials.plant[kind][PLANT_LEAF] = pine ? row_pine_leaf : row_birch_leaf;
         materials.plant[kind][PLANT_BARK] = pine ? row_pine_bark : row_birch_bark;
@@ -156,7 +158,7 @@ static void edges_of_the_grid(void **state)
     /* a crown without a radius is all in its trunk's cell; more than 255/16 is taken for that; pines keep their leaves
      * in winter */
     woods.count = 0;
-    for (int kind = 0; kind < PLANT_KINDS; kind++) plants->shape[kind][0].crown_radius = 0;
+    for (int kind = 0; kind < PLANT_KINDS; kind++) plants->shape[kind][plant_whole].crown_radius = 0;
     stand_at(PLANT_PINE, 60, 20, 10, 1.5); /* 3.6 x 100 x 1.5 / 64 = 8.4375 */
     stand_at(PLANT_BIRCH, 80, 20, 20, 1);  /* 22.5 */
     stand_at(PLANT_BIRCH, 100, 20, 10, 1); /* 5.625, of which the tops are weighted by their leaves: */
@@ -172,7 +174,7 @@ static void edges_of_the_grid(void **state)
               at.base_m == (leaves ? 2.25 : 0));
         canopy_destroy(c);
     }
-    for (int kind = 0; kind < PLANT_KINDS; kind++) plants->shape[kind][0].crown_radius = 0.375f;
+    for (int kind = 0; kind < PLANT_KINDS; kind++) plants->shape[kind][plant_whole].crown_radius = 0.375f;
 }
 
 /* 2 E3(x): 0.4432088 at 0.5, 0.2193840 at 1, 0.0602669 at 2 (Abramowitz & Stegun, table 5.4: E3 = 0.2216044, 0.1096920,
@@ -188,7 +190,7 @@ static void places_among_leaves(void **state)
     CHECK(canopy_gap(0) == 1 && canopy_gap(-1) == 1 && canopy_gap(NAN) == 1);
     woods.count = 0;
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        plants->shape[kind][0].crown_radius = 0, plants->shape[kind][0].leaf_area = 2.56f;
+        plants->shape[kind][plant_whole].crown_radius = 0, plants->shape[kind][plant_whole].leaf_area = 2.56f;
     stand_at(PLANT_BIRCH, 60, 20, 10, 1); /* 2.56 x 100 / 64 = 4, from 2.5 to 10 m */
     Canopy      *c = create(true);
     const double x = x_of(7), y = y_of(2);
@@ -218,7 +220,7 @@ static void places_among_leaves(void **state)
     CHECK(at.up == 1 && at.down == 1 && at.up_from_ground == 1 && at.sun_here == 1 && at.sun_on_ground == 1);
     canopy_destroy(c);
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        plants->shape[kind][0].crown_radius = 0.375f, plants->shape[kind][0].leaf_area = 3.6f;
+        plants->shape[kind][plant_whole].crown_radius = 0.375f, plants->shape[kind][plant_whole].leaf_area = 3.6f;
 }
 
 /* What light meets: half of a leaf's area within its outline, a quarter of a branch's side, each by the mean of its two
@@ -309,7 +311,8 @@ static void light_at_hits(void **state)
     landscape.elevation.level_count = 1;
     elevation_build_pyramids(&landscape.elevation);
     CHECK_NEAR(elevation_height(&landscape.elevation, 0, 0, NULL), 100, 1e-9);
-    for (int k = 0; k < PLANT_KINDS; k++) plants->shape[k][0].crown_radius = 0, plants->shape[k][0].leaf_area = 2.56f;
+    for (int k = 0; k < PLANT_KINDS; k++)
+        plants->shape[k][plant_whole].crown_radius = 0, plants->shape[k][plant_whole].leaf_area = 2.56f;
     woods.count = 0, woods.by_kind[PLANT_PINE] = 3, woods.by_kind[PLANT_BIRCH] = 5;
     stand_at(PLANT_BIRCH, 60, 20, 10, 1);
     Canopy *c = create(true);

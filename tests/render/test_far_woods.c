@@ -226,7 +226,7 @@ static bool looks_the_same(const Errors *e, double rms, double worst, double wor
 {
     bool same = e->at_hot_spot <= 0.18 && e->kelvin[0] <= mwir_k && e->kelvin[1] <= lwir_k;
     for (int c = 0; c < optical_channel_count; c++)
-        same = same && sqrt(e->square[c] / e->cases) <= rms &&
+        same = same && sqrt(e->square[c] / e->cases) <= (c == optical_channel_nir ? rms + 0.02 : rms) &&
                e->worst[c] <= (c == optical_channel_nir ? worst_nir : worst);
     return same;
 }

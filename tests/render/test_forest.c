@@ -3,6 +3,8 @@
 #include "tests/check.h"
 #include "tests/render/hand_plants.h"
 
+#include "render/trace/plants/forest_private.h"
+
 static const double calm[2] = {0, 0};
 
 static Forest     *forest;
@@ -77,7 +79,11 @@ static double by_force(uint32_t *plant, uint32_t *quad, const Woods *woods, cons
                 uv[0] = 1 - uv[0], uv[1] = 1 - uv[1];
             }
             if (!(t < best)) continue;
-            if (q->organ == PLANT_LEAF && !within(&hand_plants.outline[p->kind][q->outline], uv[0], uv[1])) continue;
+            if (q->organ == PLANT_LEAF && level == plant_fine) {
+                const int cell[2] = {(int)(uv[0] * plant_pattern_side), (int)(uv[1] * plant_pattern_side)};
+                if (!hand_plants.pattern[p->kind][q->outline].leaflet[cell[1]][cell[0]]) continue;
+            } else if (q->organ == PLANT_LEAF && !within(&hand_plants.outline[p->kind][q->outline], uv[0], uv[1]))
+                continue;
             best = t, *plant = (uint32_t)i, *quad = (uint32_t)k;
         }
     }
@@ -138,7 +144,7 @@ static void a_tree(void **state)
     hand_grow(false, 0.06);
     const Woods woods = hand_stand(plant, 1, origin, 0.5);
     open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
-    compare(&woods, (const double[3]){0, 0, 4}, 7, 0, true, NULL);
+    compare(&woods, (const double[3]){0, 0, 4}, 7, plant_whole, true, NULL);
     close_forest();
 }
 
@@ -150,7 +156,7 @@ static void a_stand(void **state)
     hand_grow(false, 0.06);
     const Woods woods = hand_stand(plant, 60, origin, 30);
     open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
-    compare(&woods, origin, 50, 0, true, NULL);
+    compare(&woods, origin, 50, plant_whole, true, NULL);
     close_forest();
 }
 
@@ -185,7 +191,7 @@ static void bent_rays(void **state)
         const double x = (double)one.plant->p_m[0], y = (double)one.plant->p_m[1];
         uint32_t     of, quad = 0;
         const double want_m = by_force(&of, &quad, &one, (const double[3]){0, 0, 2 - bend_per_m * (x * x + y * y)},
-                                       (const double[3]){d[0][i], d[1][i], d[2][i]}, 0, true, INFINITY);
+                                       (const double[3]){d[0][i], d[1][i], d[2][i]}, plant_whole, true, INFINITY);
         if (!(want_m < INFINITY) || range_m[i] < want_m - 60) continue; /* missed, or another stands before it */
         met++;
         CHECK_NEAR(range_m[i], want_m, 1e-5 * want_m);
@@ -203,7 +209,7 @@ static void bare_trees(void **state)
     hand_grow(false, 0.06);
     const Woods woods = hand_stand(plant, 40, origin, 20);
     open_forest(&woods, &(ForestConfig){.leaves = false}, origin, 1000);
-    compare(&woods, origin, 40, 0, false, NULL);
+    compare(&woods, origin, 40, plant_whole, false, NULL);
     close_forest();
 }
 
@@ -235,7 +241,7 @@ static void along_the_box(void **state)
             const double *const from[3] = {&o[0], &o[1], &o[2]}, *const d[3] = {&way[w][0], &way[w][1], &way[w][2]};
             forest_first_hits(&range_m, &hit, &frame, 1, from, d, NULL);
             forest_any_hits(&dark, &frame, 1, from, d, &far_m, NULL);
-            const double want_m = by_force(&at, &quad, &woods, o, way[w], 0, true, INFINITY);
+            const double want_m = by_force(&at, &quad, &woods, o, way[w], plant_whole, true, INFINITY);
             assert_true(want_m < INFINITY ? fabs(range_m - want_m) < 1e-5 && hit.quad == quad : range_m == INFINITY);
             assert_int_equal(dark, want_m < INFINITY);
             met += want_m < INFINITY, missed += !(want_m < INFINITY);
@@ -244,21 +250,51 @@ static void along_the_box(void **state)
     close_forest();
 }
 
-/* From far away plants are traced at level 1, but not by rays that must meet real ones. */
+/* Far plants are traced at the simple level, near ones at the fine one, those between at the whole one; by rays that
+ * must meet real ones at the finest. */
 static void levels(void **state)
 {
     static Plant   plant[40];
     static uint8_t real[rays];
-    const double   origin[3] = {0, 0, 0}, far_eye[3] = {0, -90000, 0};
+    const double   origin[3] = {0, 0, 0}, far_eye[3] = {0, -90000, 0}, near_eye[3] = {0, -100, 0};
     (void)state;
     hand_grow(false, 0.06);
     const Woods woods = hand_stand(plant, 40, origin, 20);
     memset(real, 1, sizeof real);
     open_forest(&woods, &(ForestConfig){.leaves = true, .level1_px = 12}, far_eye, 1000);
     assert_true(forest_simplifies(forest));
-    compare(&woods, origin, 40, 1, true, NULL);
-    compare(&woods, origin, 40, 0, true, real);
+    compare(&woods, origin, 40, plant_simple, true, NULL);
+    compare(&woods, origin, 40, plant_whole, true, real);
     close_forest();
+    open_forest(&woods, &(ForestConfig){.leaves = true, .fine = true}, near_eye, 1000);
+    assert_true(forest_simplifies(forest));
+    compare(&woods, origin, 40, plant_fine, true, NULL);
+    close_forest();
+    open_forest(&woods, &(ForestConfig){.leaves = true, .fine = true}, far_eye, 1000);
+    compare(&woods, origin, 40, plant_whole, true, NULL);
+    compare(&woods, origin, 40, plant_fine, true, real);
+    close_forest();
+}
+
+/* Plants of one height change to the fine level at heights in the picture that are even over 24 .. 40 px: at 28, 32 and
+ * 36 px a quarter, half and three quarters of them have, within four standard deviations of a share of 1000. */
+static void own_thresholds(void **state)
+{
+    enum { plants = 1000 };
+    static Plant plant[plants];
+    const double origin[3] = {0, 0, 0}, at_px[5] = {23.9, 28, 32, 36, 40.1}, want[5] = {0, 0.25, 0.5, 0.75, 1};
+    (void)state;
+    hand_grow(false, 0.06);
+    Woods woods = hand_stand(plant, plants, origin, 1);
+    for (int k = 0; k < 5; k++) {
+        const double eye[3] = {0, -10000, 0}, per_rad = at_px[k] * 10000 / 10;
+        int          fine = 0;
+        for (int i = 0; i < plants; i++) plant[i].height = 1000;
+        open_forest(&woods, &(ForestConfig){.leaves = true, .fine = true}, eye, per_rad);
+        for (int i = 0; i < plants; i++) fine += forest_level(&frame, &plant[i], origin) == plant_fine;
+        close_forest();
+        CHECK(fabs(fine / (double)plants - want[k]) <= 4 * sqrt(want[k] * (1 - want[k]) / plants));
+    }
 }
 
 /* The same trees at the origin and 200 km away: what is left is the rounding of the double origin of the rays. */
@@ -323,7 +359,7 @@ static void order(void **state)
 
 /* Gaps of a layer of leaves of every direction, in no order: exp(-G L) with G = 1/2 for a spherical distribution of
  * leaf normals (Ross, The radiation regime and architecture of plant stands, 1981). L: leaf area seen along the ray. */
-static void transmittance(void **state)
+static void transmittance_at(int level)
 {
     enum { trees = 900 };
     static Plant        plant[trees];
@@ -331,11 +367,11 @@ static void transmittance(void **state)
     static double       o[3][4096], d[3][4096], far_m[4096];
     const double *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
     const double origin[3] = {0, 0, 0}, half_m = 60;
+    const double share = level == plant_fine ? 0.5 : 1; /* of a card that is leaf */
     int          open = 0, count = 0;
-    (void)state;
     hand_grow(true, 0.03);
     for (int kind = 0; kind < PLANT_KINDS; kind++) { /* leaves alone, throughout the box of a plant */
-        PlantShape *s = &hand_plants.shape[kind][0];
+        PlantShape *s = &hand_plants.shape[kind][level];
         for (int k = 0; k < hand_leaves; k++) {
             const uint64_t of = (uint64_t)(kind * hand_leaves + k);
             const double   at[3] = {hand_dice(20, of) - 0.5, hand_dice(21, of) - 0.5, 0.05 + 0.9 * hand_dice(22, of)};
@@ -348,7 +384,7 @@ static void transmittance(void **state)
     }
     Woods woods = hand_stand(plant, trees, origin, half_m);
     for (int i = 0; i < trees; i++) plant[i].lean[0] = plant[i].lean[1] = 0, plant[i].width = 128;
-    open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
+    open_forest(&woods, &(ForestConfig){.leaves = true, .fine = level == plant_fine}, origin, 1000);
     for (int i = 0; i < 4096; i++) {
         o[0][i] = 0.7 * half_m * (2 * hand_dice(24, (uint64_t)i) - 1),
         o[1][i] = 0.7 * half_m * (2 * hand_dice(25, (uint64_t)i) - 1);
@@ -361,11 +397,18 @@ static void transmittance(void **state)
      * exp(-density x area x (1 - exp(-G l))), l the leaf area over that square */
     double exponent = 0;
     for (int i = 0; i < trees; i++) {
-        const double h = plant_height_m(&plant[i]), leaf = hand_leaves * 0.03 * 0.03; /* over (1 x 1) h2 */
+        const double h = plant_height_m(&plant[i]), leaf = share * hand_leaves * 0.03 * 0.03; /* over (1 x 1) h2 */
         exponent += h * h / (4 * half_m * half_m) * (1 - exp(-0.5 * leaf));
     }
     const double want = exp(-exponent), got = open / (double)count;
     CHECK(fabs(got - want) < 4 * sqrt(want * (1 - want) / count) + 0.01 * want);
+}
+
+static void transmittance(void **state)
+{
+    (void)state;
+    transmittance_at(plant_whole);
+    transmittance_at(plant_fine);
 }
 
 /* Openness of quads against many rays by force; the mean closely, each as far as its few rays allow. */
@@ -381,7 +424,7 @@ static void openness(void **state)
     plant[0] = (Plant){.height = 100, .width = 128, .kind = plant[0].kind};
     open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
     forest_openness(&hand_plants, forest, NULL);
-    PlantShape *s = &hand_plants.shape[plant[0].kind][0];
+    PlantShape *s = &hand_plants.shape[plant[0].kind][plant_whole];
     for (int t = 0; t < tried; t++) {
         const PlantQuad *q = &s->quad[s->quads - 1 - 3 * t]; /* leaves */
         double           all[2] = {0}, open[2] = {0}, n[3], middle[3];
@@ -396,7 +439,7 @@ static void openness(void **state)
             hand_plant_direction(d, 40, (uint64_t)(t * directions + k));
             const double cosine = v3_dot(n, d), weight = fabs(cosine);
             v3_add_scaled(o, middle, cosine > 0 ? 1e-4 : -1e-4, n);
-            const bool free = by_force(&unused, &unused, &woods, o, d, 0, true, INFINITY) == INFINITY;
+            const bool free = by_force(&unused, &unused, &woods, o, d, plant_whole, true, INFINITY) == INFINITY;
             all[d[2] < 0] += weight, open[d[2] < 0] += free ? weight : 0;
         }
         const double off[2] = {(double)q->open_up - open[0] / all[0], (double)q->open_down - open[1] / all[1]};
@@ -409,10 +452,10 @@ static void openness(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_tree),     cmocka_unit_test(a_stand), cmocka_unit_test(bent_rays),
-        cmocka_unit_test(bare_trees), cmocka_unit_test(levels),  cmocka_unit_test(along_the_box),
-        cmocka_unit_test(far_away),   cmocka_unit_test(order),   cmocka_unit_test(transmittance),
-        cmocka_unit_test(openness),
+        cmocka_unit_test(a_tree),     cmocka_unit_test(a_stand),        cmocka_unit_test(bent_rays),
+        cmocka_unit_test(bare_trees), cmocka_unit_test(levels),         cmocka_unit_test(along_the_box),
+        cmocka_unit_test(far_away),   cmocka_unit_test(order),          cmocka_unit_test(transmittance),
+        cmocka_unit_test(openness),   cmocka_unit_test(own_thresholds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -137,7 +137,7 @@ static void plates_in(void)
     int          met[2] = {0}, both = 0;
     hand_grow(true, 0.06);
     for (int kind = 0; kind < PLANT_KINDS; kind++) {
-        PlantShape *s = &hand_plants.shape[kind][0];
+        PlantShape *s = &hand_plants.shape[kind][plant_whole];
         hand_leaf(s->quad, (const double[3]){0, 0, 0.6}, (const double[3]){0, 0, 1}, 0.6, 0);
         s->quads = s->leaves = 1, s->pieces = s->bark_quads = 0;
         for (int c = 0; c < 3; c++) s->low[c] = c < 2 ? -0.3f : 0.59f, s->high[c] = c < 2 ? 0.3f : 0.61f;
@@ -259,7 +259,7 @@ static void completed(void **state)
     for (int i = 0; i < rays; i++) {
         if (!(by_table.range_m[i] < INFINITY)) continue;
         const ForestHit *hit = &by_table.hit[i];
-        const PlantQuad *q = &hand_plants.shape[hit->kind][0].quad[hit->quad];
+        const PlantQuad *q = &hand_plants.shape[hit->kind][plant_whole].quad[hit->quad];
         const Plant     *p = &plant[hit->plant];
         ForestSurface    at;
         const double     o[3] = {eye[0], eye[1], eye[2]};
@@ -311,7 +311,7 @@ static void transmittance(void **state)
     (void)state;
     hand_grow(true, 0.03);
     for (int kind = 0; kind < PLANT_KINDS; kind++) { /* leaves alone, throughout the box of a plant */
-        PlantShape *s = &hand_plants.shape[kind][0];
+        PlantShape *s = &hand_plants.shape[kind][plant_whole];
         for (int k = 0; k < hand_leaves; k++) {
             const uint64_t of = (uint64_t)(kind * hand_leaves + k);
             const double   at[3] = {hand_dice(20, of) - 0.5, hand_dice(21, of) - 0.5, 0.05 + 0.9 * hand_dice(22, of)};

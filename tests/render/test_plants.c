@@ -29,7 +29,7 @@ static void numbers_of_the_paper(void **state)
 {
     (void)state;
     for (int kind = 0; kind < PLANT_TREES; kind++) {
-        const PlantShape *s = &plants->shape[kind][0], *less = &plants->shape[kind][1];
+        const PlantShape *s = &plants->shape[kind][plant_whole], *less = &plants->shape[kind][plant_simple];
         CHECK(s->pieces >= 1695 && s->pieces <= 3634);
         CHECK(s->leaves >= 852 && s->leaves <= 1749);
         assert_int_equal(s->bark_quads, 6 * s->pieces);
@@ -114,7 +114,7 @@ static void leaf_area(void **state)
 {
     (void)state;
     for (int kind = 0; kind < PLANT_TREES; kind++) {
-        const PlantShape *s = &plants->shape[kind][0];
+        const PlantShape *s = &plants->shape[kind][plant_whole];
         double            sum = 0;
         int               beyond = 0;
         for (int k = s->bark_quads; k < s->quads; k++) {
@@ -132,7 +132,7 @@ static void leaf_area(void **state)
         CHECK(layers > 2 && layers < 7);
         /* what terrain/woods knows of the crowns */
         CHECK_NEAR(plant_crown_share((PlantKind)kind), (double)s->crown_radius, 0.1 * (double)s->crown_radius);
-        CHECK_NEAR((double)plants->shape[kind][1].leaf_area, sum, 0.12 * sum);
+        CHECK_NEAR((double)plants->shape[kind][plant_simple].leaf_area, sum, 0.12 * sum);
     }
 }
 
@@ -195,8 +195,8 @@ static void second_level(void **state)
             for (int k = 0; k < 8; k++) {
                 const double turn = 2 * pi_rad * k / 8, up = -0.15 - 0.3 * (k % 3);
                 const double d[3] = {cos(turn) * cos(up), sin(turn) * cos(up), sin(up)};
-                full += silhouette(&plants->shape[kind][0], plants->outline[kind], d, leaves);
-                less += silhouette(&plants->shape[kind][1], plants->outline[kind], d, leaves);
+                full += silhouette(&plants->shape[kind][plant_whole], plants->outline[kind], d, leaves);
+                less += silhouette(&plants->shape[kind][plant_simple], plants->outline[kind], d, leaves);
             }
             if (fabs((double)(less - full)) > 0.15 * full)
                 fail_msg("%s: %d for %d", plant_name((PlantKind)kind), less, full);
@@ -246,6 +246,7 @@ static void threads(void **state)
                 assert_true(a->quad[k].open_up == b->quad[k].open_up && a->quad[k].open_down == b->quad[k].open_down);
             }
         }
+    assert_memory_equal(plants->pattern, again->pattern, PLANT_STANDING * sizeof *plants->pattern);
     plants_destroy(again);
     pool_destroy(pool);
 }

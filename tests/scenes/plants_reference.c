@@ -12,7 +12,7 @@ Status plant_spheres_create(PlantSpheres *out, const Plants *plants)
 {
     *out = (PlantSpheres){0};
     for (int k = 0; k < PLANT_STANDING; k++) {
-        const PlantShape *shape = &plants->shape[k][0];
+        const PlantShape *shape = &plants->shape[k][plant_whole];
         float            *s = out->sphere[k] = malloc(((size_t)shape->quads + 1) * 4 * sizeof *s);
         if (!s) {
             plant_spheres_destroy(out);
@@ -172,7 +172,7 @@ void plants_judge(PlantErrors *worst, const Woods *woods, const Plants *plants, 
         placed.across[0][c] = across[0][c], placed.across[1][c] = across[1][c], placed.d[c] = d_enu[c];
     for (int i = 0; i < woods->count; i++) {
         const Plant      *plant = &woods->plant[i];
-        const PlantShape *shape = &plants->shape[plant->kind][0];
+        const PlantShape *shape = &plants->shape[plant->kind][plant_whole];
         const float      *sphere = spheres->sphere[plant->kind];
         double            o[3], d[3];
         for (int c = 0; c < 3; c++)
@@ -205,5 +205,5 @@ void plants_judge(PlantErrors *worst, const Woods *woods, const Plants *plants, 
             }
         }
     }
-    if (met && (!own || hit->level != 0)) worst->past_m = INFINITY; /* of a plant that the ray cannot meet */
+    if (met && (!own || hit->level != plant_whole)) worst->past_m = INFINITY; /* of a plant that the ray cannot meet */
 }

@@ -113,6 +113,7 @@ static Status plant_world(void)
     const Config       config = config_default();
     const ForestConfig forest = {.leaves = true,
                                  .level1_px = config.terrain.woods_level1_px,
+                                 .fine = true,
                                  .sway = config.terrain.woods_sway,
                                  .tables = config.terrain.woods_tables};
     WoodsStand         stand = {.landscape = &stage.landscape, .east_m = east_m, .north_m = north_m, .trees = trees};

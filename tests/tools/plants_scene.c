@@ -80,7 +80,7 @@ static void write_quads(const char *folder, const Woods *woods, const Plants *pl
     FILE *file = open_file(folder, "quads");
     for (int i = 0; i < woods->count; i++) {
         const Plant      *p = &woods->plant[i];
-        const PlantShape *s = &plants->shape[p->kind][0];
+        const PlantShape *s = &plants->shape[p->kind][plant_whole];
         double            m[9];
         plant_transform(m, p, NULL);
         for (int k = 0; k < s->quads; k++) {
@@ -146,8 +146,8 @@ static void make_plain(Materials *materials)
 static void flatten(Plants *plants)
 {
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        for (int k = 0; k < plants->shape[kind][0].bark_quads; k++) {
-            PlantQuad *q = &plants->shape[kind][0].quad[k];
+        for (int k = 0; k < plants->shape[kind][plant_whole].bark_quads; k++) {
+            PlantQuad *q = &plants->shape[kind][plant_whole].quad[k];
             double     u[3], v[3], n[3];
             for (int c = 0; c < 3; c++) {
                 u[c] = (double)q->corner[2][c] - (double)q->corner[0][c];

@@ -28,7 +28,7 @@ static uint8_t class_of(PlantKind kind)
 
 static FoliageCrown crown_of(const Plant *plant, const Plants *plants)
 {
-    const PlantShape *shape = &plants->shape[plant->kind][0];
+    const PlantShape *shape = &plants->shape[plant->kind][plant_whole];
     const double      low = clamp((double)shape->crown_low, 0, 0.95), middle = 0.5 * (low + 1);
     double            axis[3][3], scale[2];
     FoliageCrown      crown;

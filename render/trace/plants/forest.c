@@ -50,13 +50,13 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
     const int         quads = bare ? shape->bark_quads : shape->quads;
     out->shape = shape;
     out->outline = forest->plants->outline[kind];
+    out->pattern = level == plant_fine && kind < forest->plants->patterned ? forest->plants->pattern[kind] : NULL;
     out->azimuth = forest->azimuth;
     for (int c = 0; c < 3; c++) {
         out->centre[c] = 0.5 * ((double)shape->low[c] + (double)shape->high[c]);
         out->half[c] = 0.5 * ((double)shape->high[c] - (double)shape->low[c]) + 1e-4;
-        out->most = fmax(out->most, fabs(out->centre[c]) + out->half[c]);
     }
-    if (quads == 0) return STATUS_OK;
+    if (quads == 0 || (level == plant_fine && !forest->config.fine)) return STATUS_OK;
     find_reach(out, quads);
     RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_QUAD);
     float      *vertex = geometry ? rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -83,6 +83,26 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
     rtcReleaseGeometry(geometry);
     rtcCommitScene(out->scene);
     return forest_status(forest);
+}
+
+/* Box and reach over the levels of a kind that are traced. */
+static void unite_levels(ShapeScene *hull, const ShapeScene level[plant_levels])
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int a = 0; a <= shape_azimuths; a++) hull->reach[a] = -INFINITY;
+    for (int l = 0; l < plant_levels; l++) {
+        if (!level[l].scene) continue;
+        hull->azimuth = level[l].azimuth;
+        for (int c = 0; c < 3; c++) {
+            low[c] = fmin(low[c], level[l].centre[c] - level[l].half[c]);
+            high[c] = fmax(high[c], level[l].centre[c] + level[l].half[c]);
+        }
+        for (int a = 0; a <= shape_azimuths; a++) hull->reach[a] = fmax(hull->reach[a], level[l].reach[a]);
+    }
+    for (int c = 0; c < 3 && hull->azimuth; c++) {
+        hull->centre[c] = 0.5 * (low[c] + high[c]), hull->half[c] = 0.5 * (high[c] - low[c]);
+        hull->most = fmax(hull->most, fmax(-low[c], high[c]));
+    }
 }
 
 /* ---- lists ------------------------------------------------------------------------------------ */
@@ -149,8 +169,11 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
     for (int kind = 0; kind < PLANT_KINDS && status == STATUS_OK; kind++)
         for (int level = 0; level < plant_levels && status == STATUS_OK; level++)
             status = build_shape(&forest->shape[kind][level], forest, kind, level);
-    for (int kind = 0; kind < PLANT_STANDING && status == STATUS_OK && config->tables; kind++)
-        if (forest->shape[kind][0].scene) status = plant_table_create(&forest->table[kind], &forest->shape[kind][0]);
+    for (int kind = 0; kind < PLANT_KINDS; kind++) unite_levels(&forest->hull[kind], forest->shape[kind]);
+    for (int kind = 0; kind < PLANT_STANDING && status == STATUS_OK && config->tables; kind++) {
+        const ShapeScene *finest = &forest->shape[kind][forest_finest(forest)];
+        if (finest->scene) status = plant_table_create(&forest->table[kind], finest);
+    }
     forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count};
     memcpy(forest->standing.origin_enu, woods->origin_enu, sizeof woods->origin_enu);
     if (status == STATUS_OK) status = plant_list_commit(&forest->standing, forest, false);
@@ -196,7 +219,10 @@ const Woods  *forest_woods(const Forest *forest) { return forest->woods; }
 const Plants *forest_plants(const Forest *forest) { return forest->plants; }
 ForestConfig  forest_config(const Forest *forest) { return forest->config; }
 
-bool forest_simplifies(const Forest *forest) { return forest->config.level1_px > 0 || forest->config.tables; }
+bool forest_simplifies(const Forest *forest)
+{
+    return forest->config.level1_px > 0 || forest->config.fine || forest->config.tables;
+}
 
 /* ---- a frame ---------------------------------------------------------------------------------- */
 
@@ -229,81 +255,15 @@ void forest_sway(double sway_rad[2], const ForestFrame *frame, const Plant *plan
     for (int k = 0; k < 2; k++) sway_rad[k] = lean * frame->wind_mps[k];
 }
 
-bool forest_is_low_in_picture(const ForestFrame *frame, const Plant *plant, const double foot_enu[3])
+int forest_level(const ForestFrame *frame, const Plant *plant, const double foot_enu[3])
 {
-    double to_eye[3];
-    if (!(frame->forest->config.level1_px > 0)) return false;
+    const ForestConfig *c = &frame->forest->config;
+    double              to_eye[3];
+    if (plant->kind < PLANT_STANDING && frame->forest->table[plant->kind]) return forest_finest(frame->forest);
+    if (!(c->level1_px > 0) && !c->fine) return plant_whole;
     v3_sub(to_eye, foot_enu, frame->eye_enu);
-    return plant_height_m(plant) * frame->per_rad < frame->forest->config.level1_px * v3_length(to_eye);
-}
-
-/* ---- how much even light from above and from below reaches each quad past -------------------- */
-
-/* How much even light from above and from below reaches each quad past its own plant. */
-
-enum { quads_a_task = 256, leaf_rays = 12 /* a side */, bark_rays = 8 };
-
-typedef struct Opening {
-    const ShapeScene *scene;
-    PlantShape       *shape;
-} Opening;
-
-/* Direction k of count about n, as dense as the cosine to it; turned: about n, in turns. */
-static void towards(double d[3], const double n[3], int k, int count, double turned)
-{
-    const double radius = sqrt((k + 0.5) / count), turn = 2 * pi_rad * (0.6180339887498949 * k + turned);
-    double       u[3], v[3];
-    v3_cross(u, n, fabs(n[2]) < 0.9 ? (const double[3]){0, 0, 1} : (const double[3]){1, 0, 0});
-    v3_normalize(u, u);
-    v3_cross(v, n, u);
-    for (int c = 0; c < 3; c++)
-        d[c] = radius * (cos(turn) * u[c] + sin(turn) * v[c]) + sqrt(1 - radius * radius) * n[c];
-}
-
-/* Rays from the middle of a quad, from one side of it: how many go up and down, and how many of these are free. */
-static void count_rays(int all[2], int open[2], const ShapeScene *scene, const PlantQuad *q, int number, double side)
-{
-    static const double off = 1e-4; /* of the plant's height */
-    const int           count = q->organ == PLANT_LEAF ? leaf_rays : bark_rays;
-    double              n[3], o[3];
-    for (int c = 0; c < 3; c++) {
-        n[c] = side * (double)q->n[0][c];
-        o[c] = off * n[c];
-        for (int k = 0; k < 4; k++) o[c] += 0.25 * (double)q->corner[k][c];
-    }
-    for (int k = 0; k < count; k++) {
-        double d[3];
-        towards(d, n, k, count, random_uniform(1995, (uint32_t)(side > 0), 0, (uint64_t)number));
-        const int down = d[2] < 0;
-        all[down]++;
-        open[down] += !shape_occluded(scene, o, d);
-    }
-}
-
-static void open_quads(void *user, int worker, int task)
-{
-    const Opening *o = user;
-    const int      first = task * quads_a_task, end = first + quads_a_task;
-    (void)worker;
-    for (int k = first; k < end && k < o->shape->quads; k++) {
-        PlantQuad *q = &o->shape->quad[k];
-        int        all[2] = {0}, open[2] = {0};
-        count_rays(all, open, o->scene, q, k, 1);
-        if (q->organ == PLANT_LEAF) count_rays(all, open, o->scene, q, k, -1);
-        const float both = (float)(open[0] + open[1]) / (float)(all[0] + all[1]); /* where all go one way */
-        q->open_up = all[0] ? (float)open[0] / (float)all[0] : both;
-        q->open_down = all[1] ? (float)open[1] / (float)all[1] : both;
-    }
-}
-
-void forest_openness(Plants *plants, const Forest *forest, Pool *pool)
-{
-    for (int kind = 0; kind < PLANT_KINDS; kind++)
-        for (int level = 0; level < plant_levels; level++) {
-            Opening   o = {&forest->shape[kind][level], &plants->shape[kind][level]};
-            const int tasks = (o.shape->quads + quads_a_task - 1) / quads_a_task;
-            if (pool) pool_run(pool, tasks, open_quads, &o);
-            else
-                for (int k = 0; k < tasks; k++) open_quads(&o, 0, k);
-        }
+    const double distance_m = v3_length(to_eye), high = plant_height_m(plant) * frame->per_rad;
+    if (high < c->level1_px * distance_m) return plant_simple;
+    const double fine_px = forest_fine_px[0] + (forest_fine_px[1] - forest_fine_px[0]) * plant_rank(plant);
+    return c->fine && high >= fine_px * distance_m ? plant_fine : plant_whole;
 }

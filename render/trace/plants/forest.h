@@ -18,11 +18,16 @@ static const double forest_table_px[2] = {56, 88};
 
 typedef struct ForestConfig {
     bool   leaves;    /* false: deciduous plants are bare */
-    double level1_px; /* a standing plant lower than this in the picture is traced at level 1; 0: never */
+    double level1_px; /* a standing plant lower than this in the picture is traced at plant_simple; 0: never */
+    bool   fine;      /* others are traced at plant_fine above some height in the picture, of each plant its own between
+                       * forest_fine_px; false: never */
     double sway;      /* 0: plants stand still; 1: they sway by the wind of the frame */
     bool   tables;    /* rays from the frame's eye and to the sun meet standing plants that are lower in the picture
                        * than forest_table_px in tables (forest_table.c) */
 } ForestConfig;
+
+/* Likewise from which it is traced at plant_fine. */
+static const double forest_fine_px[2] = {24, 40};
 
 /* woods and plants must outlive it. isa: as tracer_create. Memory: 146 octets or less a standing plant, Plant's own 20
  * included. */
@@ -32,13 +37,14 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
 Status forest_create_beside(Forest **out, const Forest *of, const Woods *woods);
 void   forest_destroy(Forest *forest);
 /* Fills in PlantQuad.open_up and open_down of the forest's own prototypes, by rays through them: 24 a leaf, 8 a side of
- * a branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). pool: may be
- * NULL. */
+ * a branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). At plant_fine 2
+ * a card and 2 a side, and all cards of a spray, and all sides of a piece of branch that face up or down alike, have
+ * their mean. pool: may be NULL. */
 void          forest_openness(Plants *plants, const Forest *forest, Pool *pool);
 const Woods  *forest_woods(const Forest *forest);
 const Plants *forest_plants(const Forest *forest);
 ForestConfig  forest_config(const Forest *forest);
-/* Whether some plants are not met themselves: level1_px > 0, or tables. */
+/* Whether some plants are not always traced at the same level: level1_px > 0, fine, or tables. */
 bool forest_simplifies(const Forest *forest);
 
 /* A forest as one frame sees it; a pure function of these. */
@@ -64,17 +70,18 @@ void   forest_frame_close(ForestFrame *frame);
 enum { forest_low_bit = 1u << 31 };
 
 typedef struct ForestHit {
-    uint32_t plant; /* index in Woods.plant; with forest_low_bit: a low plant, by a number of its own */
-    uint32_t place; /* in its list */
-    uint32_t quad;  /* of its shape */
-    uint8_t  kind, level, organ;
-    bool     back; /* met from the inner side of its surface (leaves: the card's back) */
+    uint32_t plant;              /* index in Woods.plant; with forest_low_bit: a low plant, by a number of its own */
+    uint32_t place;              /* in its list */
+    uint32_t quad;               /* of its shape */
+    uint8_t  kind, level, organ; /* PlantKind, plant_fine .., PlantOrgan */
+    bool     back;               /* met from the inner side of its surface (leaves: the card's back) */
     bool     by_table;
     float    uv[2]; /* on the quad */
 } ForestHit;
 
 /* For rays of a block: where some plant is nearer than range_m, range_m and hit are replaced. real: [count], 1: plants
- * are met themselves by this ray; NULL: 0. Returns rays that entered some plant's box. Thread-safe. */
+ * are met themselves by this ray, at the finest level; NULL: 0. Returns rays that entered some plant's box.
+ * Thread-safe. */
 uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count,
                            const double *const o_enu[3], const double *const d_enu[3], const uint8_t *real);
 

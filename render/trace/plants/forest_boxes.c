@@ -49,28 +49,21 @@ static double box_along(const ShapeScene *shape, const double along[3])
 static void bounds_by(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant,
                       double (*reach)(const ShapeScene *, const double[3]))
 {
-    double m[9];
+    const ShapeScene *hull = &list->forest->hull[plant->kind];
+    double            m[9];
     plant_transform(m, plant, NULL);
-    for (int c = 0; c < 3; c++) low_m[c] = INFINITY, high_m[c] = -INFINITY;
-    for (int l = 0; l < plant_levels; l++) {
-        const ShapeScene *level = &list->forest->shape[plant->kind][l];
-        if (!level->scene) continue;
-        for (int c = 0; c < 3; c++) {
-            const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
-            const double before = -reach(level, back), after = reach(level, along);
-            low_m[c] = before < low_m[c] ? before : low_m[c]; /* not fmin, which compiles to a call */
-            high_m[c] = after > high_m[c] ? after : high_m[c];
-        }
+    for (int c = 0; c < 3; c++) {
+        const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
+        low_m[c] = hull->azimuth ? -reach(hull, back) : 0; /* NULL: a kind without quads */
+        high_m[c] = hull->azimuth ? reach(hull, along) : 0;
     }
-    for (int c = 0; c < 3; c++) /* of a kind without quads */
-        if (!(low_m[c] <= high_m[c])) low_m[c] = high_m[c] = 0;
 }
 
 double plant_bounds_unit_m(const PlantList *list, const Plant *plant)
 {
     static const double per = 1.0 / 120;
     const double        height_m = plant_height_m(plant), wide = plant->width > 128 ? plant->width / 128.0 : 1;
-    return list->forest->shape[plant->kind][0].most * per * wide * height_m;
+    return list->forest->hull[plant->kind].most * per * wide * height_m;
 }
 
 /* The box in whole units, outwards, which are kept. Lean adds less to a coordinate than the units have room for. */

@@ -6,9 +6,9 @@
 #include "render/trace/plants/forest_private.h"
 
 /* Height in the picture from which a plant is met itself. */
-static double least_real_px(uint32_t place)
+static double least_real_px(const Plant *plant)
 {
-    return forest_table_px[0] + (forest_table_px[1] - forest_table_px[0]) * plant_rank(place);
+    return forest_table_px[0] + (forest_table_px[1] - forest_table_px[0]) * plant_rank(plant);
 }
 
 /* The coarsest level whose texels are not wider than what one ray stands for. */
@@ -28,7 +28,7 @@ void card_make(Card *card, const CardRays *rays, const PlantList *list, const Pl
     card->table = table;
     for (int c = 0; c < 3; c++) from[c] = frame->eye_enu[c] - (list->origin_enu[c] + (double)plant->p_m[c]);
     const double away_m = v3_length(from), height_m = plant_height_m(plant);
-    card->real = !table || height_m * frame->per_rad >= least_real_px(place) * away_m;
+    card->real = !table || height_m * frame->per_rad >= least_real_px(plant) * away_m;
     if (card->real) return;
     from[2] -= rays->bend_per_m * (from[0] * from[0] + from[1] * from[1]); /* all over the plant the same */
     plant_axes_in(axis, scale, frame, plant);

@@ -327,7 +327,8 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
         }
         for (unsigned left = lanes & p.table_hit; left; left &= left - 1) { /* they lie far apart in memory */
             const ForestHit *met = &p.ray[__builtin_ctz(left)].hit;
-            __builtin_prefetch(&frame->forest->shape[lists[0]->plant[met->place].kind][0].shape->quad[met->quad]);
+            const int        kind = lists[0]->plant[met->place].kind;
+            __builtin_prefetch(&frame->forest->table[kind]->shape->shape->quad[met->quad]);
         }
         for (int l = 0; l < some; l++) {
             ListRay *ray = &p.ray[l];

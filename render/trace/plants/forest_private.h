@@ -15,9 +15,10 @@ typedef struct ShapeScene {
     RTCScene           scene;
     const PlantShape  *shape;
     const LeafOutline *outline;            /* [plant_outlines] */
+    const LeafPattern *pattern;            /* [plant_outlines]; NULL: leaves have outlines */
     double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
     const double (*azimuth)[2];            /* unit vectors of azimuths, [shape_azimuths + 1] of the forest */
-    double most;                           /* a coordinate of its box has, either way */
+    double most;                           /* a coordinate of its box has, either way; of a hull alone */
     double reach[shape_azimuths + 1];      /* how far it reaches towards azimuths from x to y, from its axis; the last
                                             * is the first */
 } ShapeScene;
@@ -92,19 +93,24 @@ struct Forest {
     const Plants *plants;
     ForestConfig  config;
     ShapeScene    shape[PLANT_KINDS][plant_levels];
+    ShapeScene    hull[PLANT_KINDS]; /* box and reach that hold all its levels; nothing else. azimuth NULL: no quads */
     double        azimuth[shape_azimuths + 1][2];
-    PlantTable   *table[PLANT_STANDING]; /* of whole shapes; NULL: none */
+    PlantTable   *table[PLANT_STANDING]; /* of the finest shapes; NULL: none */
     bool          borrows;               /* their scenes and tables */
     PlantList     standing;
     LowSquares   *squares;
 };
 
-/* A number in 0 .. 1 of a plant that its looks do not depend on. */
-static inline double plant_rank(uint32_t number)
+/* A number in 0 .. 1 of a plant, by where it stands and how high it is: neighbours change their level at different
+ * heights in the picture. */
+static inline double plant_rank(const Plant *plant)
 {
-    uint32_t h = number * 0x9e3779b1u;
-    h = (h ^ h >> 15) * 0x85ebca77u;
-    return (double)(h ^ h >> 13) * 0x1p-32;
+    uint64_t h;
+    memcpy(&h, plant->p_m, sizeof h);
+    h ^= ((uint64_t)plant->twist << 32 | plant->height) * 0x9e3779b97f4a7c15u;
+    h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
+    h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
+    return (double)(h >> 11) * 0x1p-53;
 }
 
 static inline double smaller(double a, double b) { return a < b ? a : b; }
@@ -118,8 +124,10 @@ void   plant_list_close(PlantList *list);
 
 /* How far a plant leans beyond its own lean, rad east and north. */
 void forest_sway(double sway_rad[2], const ForestFrame *frame, const Plant *plant, double x_m, double y_m);
-/* Whether a plant is so low in the picture that it is traced at level 1. */
-bool forest_is_low_in_picture(const ForestFrame *frame, const Plant *plant, const double foot_enu[3]);
+/* The level at which a plant is traced, by its height in the picture; where it has a table, that of the table: the
+ * finest, as for rays that must meet real plants. */
+int               forest_level(const ForestFrame *frame, const Plant *plant, const double foot_enu[3]);
+static inline int forest_finest(const struct Forest *forest) { return forest->config.fine ? plant_fine : plant_whole; }
 
 /* Embree's callbacks of a list: user pointer is the PlantList. */
 void plant_box(const struct RTCBoundsFunctionArguments *a);
@@ -136,7 +144,7 @@ typedef struct PlantFrame {
     F64x4        column[3], per; /* from ENU to the prototype's axes, and scales there; the fourth lane is 0 */
     double       foot_enu[3];
     const Plant *plant; /* NULL: not known */
-    bool         low;   /* in the picture: level 1 is traced unless the ray must meet real plants */
+    int          level; /* that is traced unless the ray must meet real plants */
 } PlantFrame;
 
 enum { frames_kept = 128 };

@@ -43,7 +43,7 @@ static const PlantFrame *frame_of(ListRay *ray, const PlantList *list, const Pla
     plant_axes_in(axis, scale, ray->frame, plant);
     for (int c = 0; c < 3; c++) f->column[c] = (F64x4){axis[0][c], axis[1][c], axis[2][c], 0};
     f->per = (F64x4){1 / scale[0], 1 / scale[0], 1 / scale[1], 0};
-    f->low = forest_is_low_in_picture(ray->frame, plant, f->foot_enu);
+    f->level = forest_level(ray->frame, plant, f->foot_enu);
     return f;
 }
 
@@ -67,8 +67,9 @@ static bool enter_plant(QuadRay *q, double *start_m, ListRay *ray, const PlantLi
 {
     const Plant      *plant = &list->plant[place];
     const PlantFrame *stands = frame_of(ray, list, plant);
-    const ShapeScene *shape = &list->forest->shape[plant->kind][stands->low && !ray->real];
-    double            low[4] __attribute__((aligned(32))), high[4] __attribute__((aligned(32)));
+    const ShapeScene *shape =
+        &list->forest->shape[plant->kind][ray->real ? forest_finest(list->forest) : stands->level];
+    double low[4] __attribute__((aligned(32))), high[4] __attribute__((aligned(32)));
     q->shape = shape;
     if (!shape->scene) return false;
     const double east_m = ray->o_enu[0] - stands->foot_enu[0], north_m = ray->o_enu[1] - stands->foot_enu[1];
@@ -149,6 +150,7 @@ static bool test_quad(double *at_m, const QuadRay *q, uint32_t index)
     *at_m = pass.at_m;
     if (quad->organ != PLANT_LEAF) return true;
     place_of(uv, &pass, q);
+    if (q->shape->pattern) return plants_leaflet(&q->shape->pattern[quad->outline], uv[0], uv[1]) > 0;
     return plants_within_outline(&q->shape->outline[quad->outline], uv[0], uv[1]);
 }
 
@@ -240,7 +242,7 @@ bool plant_first(ListRay *ray, const PlantList *list, uint32_t place)
         .quad = q.quad,
         .kind = plant->kind,
         .organ = quad->organ,
-        .level = q.shape == &list->forest->shape[plant->kind][1],
+        .level = (uint8_t)(q.shape - list->forest->shape[plant->kind]),
         .back = (double)quad->n[0][0] * q.d[0] + (double)quad->n[0][1] * q.d[1] + (double)quad->n[0][2] * q.d[2] > 0};
     pass_of(&pass, &q, quad);
     place_of(ray->hit.uv, &pass, &q);
@@ -266,7 +268,8 @@ void plant_complete(ListRay *ray, const PlantList *list)
     ForestHit        *hit = &ray->hit;
     const Plant      *plant = &list->plant[hit->place];
     const PlantFrame *stands = frame_of(ray, list, plant);
-    const PlantQuad  *quad = &list->forest->shape[plant->kind][0].shape->quad[hit->quad];
+    const int         level = forest_finest(list->forest);
+    const PlantQuad  *quad = &list->forest->shape[plant->kind][level].shape->quad[hit->quad];
     double            p[4] __attribute__((aligned(32))), d[4] __attribute__((aligned(32))), side[3];
     QuadPlane         plane;
     const double      m[3] = {ray->o_enu[0] - stands->foot_enu[0] + ray->limit_m * ray->d_enu[0],
@@ -283,7 +286,7 @@ void plant_complete(ListRay *ray, const PlantList *list)
     v3_cross(side, plane.u, p);
     hit->uv[1] = (float)clamp(v3_dot(side, plane.n) / square, 0, 1);
     hit->plant = list->number ? list->number[hit->place] : hit->place;
-    hit->kind = plant->kind, hit->organ = quad->organ, hit->level = 0;
+    hit->kind = plant->kind, hit->organ = quad->organ, hit->level = (uint8_t)level;
     hit->back = (double)quad->n[0][0] * d[0] + (double)quad->n[0][1] * d[1] + (double)quad->n[0][2] * d[2] > 0;
 }
 
@@ -314,6 +317,28 @@ static void bark_normal(double n[3], const PlantQuad *quad, const QuadPlane *pla
     if (v3_normalize(about, plane->u)) v3_add_scaled(n, n, -(double)slope[1], about);
 }
 
+/* Reflectance and normal of a place on a leaf; side: of the ray. */
+static void leaf_surface(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const double axis[3][3],
+                         const double per[2], const QuadPlane *plane, double side)
+{
+    const ShapeScene *shape = &frame->forest->shape[hit->kind][hit->level];
+    const PlantQuad  *quad = &shape->shape->quad[hit->quad];
+    memcpy(out->n_enu, out->n_geo, sizeof out->n_enu);
+    if (!shape->pattern) {
+        out->albedo = plants_leaf_albedo((PlantKind)hit->kind, hit->plant, quad->piece);
+        return;
+    }
+    const LeafPlace at =
+        plants_leaf_place(frame->forest->plants, (PlantKind)hit->kind, hit->plant, quad, hit->quad, hit->uv);
+    double n[3], u[3], v[3];
+    out->albedo = at.albedo;
+    if (!v3_normalize(n, plane->n) || !v3_normalize(u, plane->u) || !v3_normalize(v, plane->v)) return;
+    v3_add_scaled(n, n, (double)at.slope[0], u);
+    v3_add_scaled(n, n, (double)at.slope[1], v);
+    turn_normal(out->n_enu, axis, per, n);
+    v3_scale(out->n_enu, side, out->n_enu);
+}
+
 void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const double o_enu[3],
                     const double d_enu[3], double range_m, float footprint_m)
 {
@@ -342,8 +367,7 @@ void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHi
     to_prototype(p, axis, per, from);
     out->height_share = (float)clamp(p[2], 0, 1);
     if (quad->organ == PLANT_LEAF) {
-        memcpy(out->n_enu, out->n_geo, sizeof out->n_enu);
-        out->albedo = plants_leaf_albedo((PlantKind)hit->kind, hit->plant, quad->piece);
+        leaf_surface(out, frame, hit, axis, per, &plane, side);
         return;
     }
     const float p_m[3] = {(float)(p[0] * height_m), (float)(p[1] * height_m), (float)(p[2] * height_m)};

@@ -1,4 +1,4 @@
-/* render/trace/plants/plants.c: grows the prototype of every kind at both levels, and brings them to a height of 1 m.
+/* render/trace/plants/plants.c: grows the prototype of every kind at all levels, and brings them to a height of 1 m.
  */
 #include "render/trace/plants/plants_private.h"
 
@@ -9,6 +9,11 @@
 double grow_draw(Growth *g, double low, double high)
 {
     return low + (high - low) * random_uniform(g->seed, (uint32_t)g->kind, 0, g->drawn++);
+}
+
+double grow_draw_fine(Growth *g, double low, double high)
+{
+    return low + (high - low) * random_uniform(g->seed, (uint32_t)g->kind, 1, g->drawn_fine++);
 }
 
 static PlantQuad *add_quad(Growth *g, PlantQuad **list, int *count, int *room)
@@ -66,9 +71,11 @@ void grow_piece(Growth *g, const double a[3], const double b[3], double radius_a
     g->pieces++;
 }
 
-void grow_leaf(Growth *g, const double at[3], const double along[3], const double n[3], double length, double width)
+void grow_card(Growth *g, const double at[3], const double along[3], const double n[3], const double size[2],
+               int outline)
 {
-    double v[3], u[3], face[3];
+    const double length = size[0], width = size[1];
+    double       v[3], u[3], face[3];
     memcpy(v, along, sizeof v);
     if (!v3_normalize(v, v)) return;
     v3_cross(u, v, n);
@@ -77,14 +84,22 @@ void grow_leaf(Growth *g, const double at[3], const double along[3], const doubl
     PlantQuad *q = add_quad(g, &g->leaf, &g->leaves, &g->leaf_room);
     if (!q) return;
     q->organ = PLANT_LEAF;
-    q->outline = (uint8_t)(grow_draw(g, 0, 1) * plant_outlines);
-    q->piece = (uint16_t)(g->leaves - 1);
+    q->outline = (uint8_t)outline;
+    q->piece = (uint16_t)(g->sprays - 1);
     for (int x = 0; x < 3; x++) {
         const double left = at[x] - 0.5 * width * u[x], right = at[x] + 0.5 * width * u[x];
         q->corner[0][x] = (float)left, q->corner[1][x] = (float)right;
         q->corner[2][x] = (float)(right + length * v[x]), q->corner[3][x] = (float)(left + length * v[x]);
         for (int k = 0; k < 4; k++) q->n[k][x] = (float)face[x];
     }
+}
+
+void grow_leaf(Growth *g, const double at[3], const double along[3], const double n[3], double length, double width)
+{
+    const int outline = (int)(grow_draw(g, 0, 1) * plant_outlines);
+    g->sprays++;
+    if (g->level == plant_fine && g->kind < PLANT_STANDING) grow_spray(g, at, along, n, length, width);
+    else grow_card(g, at, along, n, (const double[2]){length, width}, outline);
 }
 
 void grow_facet(Growth *g, const double corner[3][3])
@@ -119,8 +134,38 @@ static int compare_radii(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
+static double leaf_area(const PlantShape *shape, const double share[plant_outlines])
+{
+    double area = 0;
+    for (int q = shape->bark_quads; q < shape->quads; q++)
+        area += card_area(&shape->quad[q]) * share[shape->quad[q].outline];
+    return area;
+}
+
+static double top(const PlantShape *shape)
+{
+    double high = 0;
+    for (int q = 0; q < shape->quads; q++)
+        for (int k = 0; k < 4; k++) high = fmax(high, (double)shape->quad[q].corner[k][2]);
+    return high;
+}
+
+/* Makes every card larger or smaller about its stalk, so that the area of all leaves of a plant 1 m high is `wanted`.
+ */
+static void scale_cards(PlantShape *shape, const double share[plant_outlines], double wanted)
+{
+    const double by = top(shape) * sqrt(wanted / leaf_area(shape, share));
+    for (int q = shape->bark_quads; q < shape->quads; q++) {
+        PlantQuad *quad = &shape->quad[q];
+        for (int x = 0; x < 3; x++) {
+            const double stalk = 0.5 * ((double)quad->corner[0][x] + (double)quad->corner[1][x]);
+            for (int k = 0; k < 4; k++) quad->corner[k][x] = (float)(stalk + by * ((double)quad->corner[k][x] - stalk));
+        }
+    }
+}
+
 /* Height 1 m, boxes, leaf area and crown. */
-static Status finish_shape(PlantShape *out, const float outline_area[plant_outlines])
+static Status finish_shape(PlantShape *out, const double share[plant_outlines])
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int q = 0; q < out->quads; q++)
@@ -130,7 +175,7 @@ static Status finish_shape(PlantShape *out, const float outline_area[plant_outli
             }
     const float scale = 1 / high[2];
     float      *radius = malloc(((size_t)out->leaves + 1) * sizeof *radius);
-    double      area = 0, lowest = 1;
+    double      lowest = 1;
     if (!radius) return STATUS_NO_MEMORY;
     for (int x = 0; x < 3; x++) out->low[x] = low[x] * scale, out->high[x] = high[x] * scale;
     for (int q = 0, leaf = 0; q < out->quads; q++) {
@@ -140,12 +185,11 @@ static Status finish_shape(PlantShape *out, const float outline_area[plant_outli
         if (quad->organ != PLANT_LEAF) continue;
         const double x = 0.5 * (double)(quad->corner[0][0] + quad->corner[2][0]);
         const double y = 0.5 * (double)(quad->corner[0][1] + quad->corner[2][1]);
-        area += card_area(quad) * (double)outline_area[quad->outline];
         lowest = fmin(lowest, (double)quad->corner[0][2]);
         radius[leaf++] = (float)sqrt(x * x + y * y);
     }
     qsort(radius, (size_t)out->leaves, sizeof *radius, compare_radii);
-    out->leaf_area = (float)area;
+    out->leaf_area = (float)leaf_area(out, share);
     out->crown_low = (float)lowest;
     out->crown_radius = out->leaves > 0 ? radius[out->leaves * 9 / 10] : 0;
     free(radius);
@@ -155,48 +199,92 @@ static Status finish_shape(PlantShape *out, const float outline_area[plant_outli
 typedef struct Nursery {
     Plants  *plants;
     uint64_t seed;
-    Status   status[PLANT_KINDS][plant_levels];
+    Status   status[PLANT_KINDS];
 } Nursery;
 
-static void grow_kind(void *user, int worker, int task)
+/* Takes the quads of a growth. */
+static Status take_quads(PlantShape *out, const Growth *g)
 {
-    Nursery     *n = user;
-    const int    kind = task / plant_levels, level = task % plant_levels;
-    PlantShape  *out = &n->plants->shape[kind][level];
-    const float *outline_area = n->plants->outline_area[kind];
-    Growth       g = {.seed = n->seed, .kind = kind, .level = level};
-    (void)worker;
-    if (kind < PLANT_TREES) grow_tree(&g);
-    else grow_low_plant(&g);
-    out->quads = g.bark_quads + g.leaves, out->bark_quads = g.bark_quads, out->pieces = g.pieces,
-    out->leaves = g.leaves;
-    if (!g.lost && out->quads > 0) out->quad = malloc((size_t)out->quads * sizeof *out->quad);
-    if (out->quad) {
-        if (g.bark_quads) memcpy(out->quad, g.bark, (size_t)g.bark_quads * sizeof *g.bark);
-        if (g.leaves) memcpy(out->quad + g.bark_quads, g.leaf, (size_t)g.leaves * sizeof *g.leaf);
+    out->quads = g->bark_quads + g->leaves, out->bark_quads = g->bark_quads, out->pieces = g->pieces,
+    out->leaves = g->leaves;
+    if (g->lost || out->quads == 0 || !(out->quad = malloc((size_t)out->quads * sizeof *out->quad)))
+        return STATUS_NO_MEMORY;
+    if (g->bark_quads) memcpy(out->quad, g->bark, (size_t)g->bark_quads * sizeof *g->bark);
+    if (g->leaves) memcpy(out->quad + g->bark_quads, g->leaf, (size_t)g->leaves * sizeof *g->leaf);
+    return STATUS_OK;
+}
+
+static double mean_of(const double share[plant_outlines])
+{
+    double sum = 0;
+    for (int k = 0; k < plant_outlines; k++) sum += share[k] / plant_outlines;
+    return sum;
+}
+
+/* The fine level last: its leaf area is that of the whole one. */
+static Status grow_levels(Plants *plants, int kind, uint64_t seed)
+{
+    static const int order[plant_levels] = {plant_whole, plant_simple, plant_fine};
+    double           outline[plant_outlines], pattern[plant_outlines];
+    double           height = 1;
+    Status           status = STATUS_OK;
+    for (int k = 0; k < plant_outlines; k++) {
+        outline[k] = (double)plants->outline_area[kind][k];
+        pattern[k] = kind < PLANT_STANDING ? (double)plants->pattern[kind][k].area : outline[k];
     }
-    n->status[kind][level] = out->quad ? finish_shape(out, outline_area) : STATUS_NO_MEMORY;
-    free(g.bark), free(g.leaf);
+    for (int l = 0; l < plant_levels && status == STATUS_OK; l++) {
+        const int     level = order[l];
+        const double *share = level == plant_fine ? pattern : outline;
+        PlantShape   *out = &plants->shape[kind][level];
+        Growth        g = {.seed = seed,
+                           .kind = kind,
+                           .level = level,
+                           .outline_area = mean_of(outline),
+                           .pattern_area = mean_of(pattern),
+                           .height = height};
+        if (kind < PLANT_TREES) grow_tree(&g);
+        else grow_low_plant(&g);
+        status = take_quads(out, &g);
+        free(g.bark), free(g.leaf);
+        for (int k = 0; k < 3 && status == STATUS_OK && level == plant_fine && kind < PLANT_STANDING; k++)
+            scale_cards(out, share,
+                        (double)plants->shape[kind][plant_whole].leaf_area); /* which moves the top a little */
+        if (status == STATUS_OK && level == plant_whole) height = top(out);
+        if (status == STATUS_OK) status = finish_shape(out, share);
+    }
+    return status;
+}
+
+static void grow_kind(void *user, int worker, int kind)
+{
+    Nursery *n = user;
+    (void)worker;
+    for (int k = 0; k < plant_outlines; k++) {
+        LeafOutline *outline = &n->plants->outline[kind][k];
+        plant_outline(outline, (PlantKind)kind, k, n->seed);
+        n->plants->outline_area[kind][k] = (float)plant_outline_area(outline);
+        if (kind < PLANT_STANDING) plant_pattern(&n->plants->pattern[kind][k], (PlantKind)kind, k, n->seed);
+    }
+    n->status[kind] = grow_levels(n->plants, kind, n->seed);
 }
 
 Status plants_create(Plants **out, uint64_t seed, Pool *pool)
 {
     Nursery n = {.plants = calloc(1, sizeof *n.plants), .seed = seed};
     if (!n.plants) return STATUS_NO_MEMORY;
-    for (int kind = 0; kind < PLANT_KINDS; kind++)
-        for (int k = 0; k < plant_outlines; k++) {
-            plant_outline(&n.plants->outline[kind][k], (PlantKind)kind, k, seed);
-            n.plants->outline_area[kind][k] = (float)plant_outline_area(&n.plants->outline[kind][k]);
-        }
-    if (pool) pool_run(pool, PLANT_KINDS * plant_levels, grow_kind, &n);
+    n.plants->patterned = PLANT_STANDING;
+    if (!(n.plants->pattern = calloc(PLANT_STANDING, sizeof *n.plants->pattern))) {
+        free(n.plants);
+        return STATUS_NO_MEMORY;
+    }
+    if (pool) pool_run(pool, PLANT_KINDS, grow_kind, &n);
     else
-        for (int t = 0; t < PLANT_KINDS * plant_levels; t++) grow_kind(&n, 0, t);
+        for (int kind = 0; kind < PLANT_KINDS; kind++) grow_kind(&n, 0, kind);
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        for (int level = 0; level < plant_levels; level++)
-            if (n.status[kind][level] != STATUS_OK) {
-                plants_destroy(n.plants);
-                return STATUS_NO_MEMORY;
-            }
+        if (n.status[kind] != STATUS_OK) {
+            plants_destroy(n.plants);
+            return STATUS_NO_MEMORY;
+        }
     *out = n.plants;
     return STATUS_OK;
 }
@@ -206,5 +294,6 @@ void plants_destroy(Plants *plants)
     if (!plants) return;
     for (int kind = 0; kind < PLANT_KINDS; kind++)
         for (int level = 0; level < plant_levels; level++) free(plants->shape[kind][level].quad);
+    free(plants->pattern);
     free(plants);
 }

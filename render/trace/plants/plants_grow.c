@@ -38,8 +38,8 @@ static const Habit habits[PLANT_TREES] = {
 
 enum { trunk_pieces = 12, branch_pieces = 4, sub_pieces = 2 };
 static const double golden_rad = 2.39996322972865332;
-static const double twigs_too = 1.85; /* radius of a sub-branch at level 1, which stands for its twigs as well: bare
-                                       * silhouettes then agree (tests/render/test_plants.c) */
+static const double twigs_too = 1.85; /* radius of a sub-branch at plant_simple, which stands for its twigs as well:
+                                       * bare silhouettes then agree (tests/render/test_plants.c) */
 static const double leaf_layers = 4, outline_share = 0.5; /* of a card; about */
 
 /* Radius of the crown at a height in it, 0 .. 1, over its largest. */
@@ -61,7 +61,7 @@ static void bend(double (*p)[3], double d[3], Growth *g, int steps, double lengt
     }
 }
 
-/* Pieces along a way, from radius a to radius b; at level 1 every `skip` steps are one. */
+/* Pieces along a way, from radius a to radius b; at plant_simple every `skip` steps are one. */
 static void pieces_along(Growth *g, double (*p)[3], int steps, double a, double b, int sides, int skip)
 {
     for (int k = 0; k < steps; k += skip) {
@@ -82,7 +82,7 @@ static void aside(double out[3], const double d[3], double angle, double turn)
     for (int x = 0; x < 3; x++) out[x] = cos(angle) * d[x] + sin(angle) * (cos(turn) * u[x] + sin(turn) * v[x]);
 }
 
-/* Leaves face the sky more than the ground, each in its own way. At level 1 one card stands for four. */
+/* Leaves face the sky more than the ground, each in its own way. At plant_simple one card stands for four. */
 static void leaf_at(Growth *g, const Habit *h, const double p[3], const double d[3], double length)
 {
     double along[3], n[3];
@@ -91,11 +91,11 @@ static void leaf_at(Growth *g, const Habit *h, const double p[3], const double d
         n[x] = grow_draw(g, -1, 1) + (x == 2 ? 0.7 : 0);
     }
     const double size = length * grow_draw(g, 0.75, 1.25);
-    if (g->level && g->offered++ % 4) {
+    if (g->level == plant_simple && g->offered++ % 4) {
         grow_draw(g, 0, 1); /* as the outline takes */
         return;
     }
-    const double larger = g->level == 0 ? 1 : 2;
+    const double larger = g->level != plant_simple ? 1 : 2;
     grow_leaf(g, p, along, n, larger * size, larger * size * h->leaf_aspect);
 }
 
@@ -107,7 +107,7 @@ static void grow_sub(Growth *g, const Habit *h, const double at[3], const double
     memcpy(p[0], at, sizeof p[0]);
     memcpy(d, toward, sizeof d);
     bend(p, d, g, sub_pieces, length, 0.4 * h->rise, h->crooked);
-    if (g->level == 0) pieces_along(g, p, sub_pieces, radius, 0.5 * radius, 6, 1);
+    if (g->level != plant_simple) pieces_along(g, p, sub_pieces, radius, 0.5 * radius, 6, 1);
     else pieces_along(g, p, sub_pieces, twigs_too * radius, 0.7 * twigs_too * radius, 3, sub_pieces);
     for (int t = 0; t < h->twigs; t++) {
         const double share = (t + grow_draw(g, 0.4, 1)) / h->twigs;
@@ -116,7 +116,7 @@ static void grow_sub(Growth *g, const Habit *h, const double at[3], const double
         for (int x = 0; x < 3; x++) from[x] = p[k][x] + (share * sub_pieces - k) * (p[k + 1][x] - p[k][x]);
         aside(way, d, grow_draw(g, 0.4, 1.0), t * pi_rad + grow_draw(g, -0.8, 0.8));
         v3_add_scaled(tip, from, length * grow_draw(g, 0.25, 0.45), way);
-        if (g->level == 0) grow_piece(g, from, tip, 0.45 * radius, 0.3 * radius, 6);
+        if (g->level != plant_simple) grow_piece(g, from, tip, 0.45 * radius, 0.3 * radius, 6);
         leaf_at(g, h, tip, way, leaf_m);
     }
     for (int k = 0; k < h->more; k++) {
@@ -135,7 +135,7 @@ static void grow_branch(Growth *g, const Habit *h, const double at[3], double up
     const double length = reach / fmax(sin(angle), 0.6) * grow_draw(g, 0.8, 1.1);
     memcpy(p[0], at, sizeof p[0]);
     bend(p, d, g, branch_pieces, length, h->rise, h->crooked);
-    if (g->level == 0) pieces_along(g, p, branch_pieces, radius, 0.35 * radius, 6, 1);
+    if (g->level != plant_simple) pieces_along(g, p, branch_pieces, radius, 0.35 * radius, 6, 1);
     else pieces_along(g, p, branch_pieces, radius, 0.35 * radius, 4, 2);
     for (int s = 0; s < h->subs; s++) {
         const double share = 0.22 + 0.78 * (s + grow_draw(g, 0.2, 0.9)) / h->subs;
@@ -164,7 +164,7 @@ void grow_tree(Growth *g)
         for (int x = 0; x < 2; x++) d[x] = 0.6 * d[x] + grow_draw(g, -0.5, 0.5) * h->crooked;
         v3_normalize(d, d);
     }
-    pieces_along(g, p, trunk_pieces, h->radius, 0.22 * h->radius, 6, g->level == 0 ? 1 : 3);
+    pieces_along(g, p, trunk_pieces, h->radius, 0.22 * h->radius, 6, g->level != plant_simple ? 1 : 3);
     double turn = grow_draw(g, 0, 2 * pi_rad);
     for (int b = 0; b < h->branches; b++) {
         const int    group = b / h->whorl, groups = (h->branches + h->whorl - 1) / h->whorl;
@@ -175,7 +175,8 @@ void grow_tree(Growth *g)
         double       at[3];
         for (int x = 0; x < 3; x++) at[x] = p[k][x] + (z - k) * (p[k + 1][x] - p[k][x]);
         turn += h->whorl > 1 ? 2 * pi_rad / h->whorl + (b % h->whorl == 0 ? golden_rad : 0) : golden_rad;
-        const double radius = h->radius * (0.42 - 0.2 * up) * sqrt(40.0 / h->branches);
+        /* their cross-sections together are nine tenths of the foot's */
+        const double radius = h->radius * (0.19 - 0.08 * up) * sqrt(40.0 / h->branches);
         grow_branch(g, h, at, up, turn + grow_draw(g, -0.25, 0.25), h->spread * crown_at(h, up), radius, leaf_m);
     }
 }
@@ -192,8 +193,9 @@ static void grow_stems(Growth *g, int stems, double half_x, double half_y, doubl
                                grow_draw(g, 0.75, 1)};
         double       middle[3];
         for (int x = 0; x < 3; x++) middle[x] = 0.5 * (foot[x] + tip[x]) + (x < 2 ? grow_draw(g, -0.05, 0.05) : 0.08);
-        if (g->level == 0) grow_piece(g, foot, middle, 0.018, 0.012, 6), grow_piece(g, middle, tip, 0.012, 0.006, 6);
-        else grow_piece(g, foot, tip, 0.016, 0.006, 3);
+        if (g->level != plant_simple)
+            grow_piece(g, foot, middle, 0.010, 0.007, 6), grow_piece(g, middle, tip, 0.007, 0.004, 6);
+        else grow_piece(g, foot, tip, 0.009, 0.004, 3);
     }
     for (int l = 0; l < leaves; l++) { /* in the shell more than within */
         const double turn = grow_draw(g, 0, 2 * pi_rad), out = sqrt(grow_draw(g, 0.25, 1)),
@@ -204,8 +206,10 @@ static void grow_stems(Growth *g, int stems, double half_x, double half_y, doubl
         for (int x = 0; x < 3; x++)
             along[x] = (x < 2 ? at[x] : 0.2) + grow_draw(g, -0.4, 0.4), n[x] = grow_draw(g, -1, 1) + (x == 2 ? 0.5 : 0);
         const double size = leaf_m * grow_draw(g, 0.7, 1.3);
-        if (g->level && l % 4) grow_draw(g, 0, 1);
-        else grow_leaf(g, at, along, n, size * (g->level ? 2 : 1), 0.7 * size * (g->level ? 2 : 1));
+        if (g->level == plant_simple && l % 4) grow_draw(g, 0, 1);
+        else
+            grow_leaf(g, at, along, n, size * (g->level == plant_simple ? 2 : 1),
+                      0.7 * size * (g->level == plant_simple ? 2 : 1));
     }
 }
 
@@ -218,8 +222,8 @@ static void grow_blades(Growth *g, int blades, double spread, double lean, doubl
         const double at[3] = {spread * out * cos(turn), spread * out * sin(turn), 0};
         const double along[3] = {lean * out * cos(turn), lean * out * sin(turn), 1};
         const double n[3] = {cos(face), sin(face), 0.1};
-        const double length = grow_draw(g, 0.6, 1), wide = width * (g->level ? 2 : 1);
-        if (g->level && b % 2) grow_draw(g, 0, 1);
+        const double length = grow_draw(g, 0.6, 1), wide = width * (g->level == plant_simple ? 2 : 1);
+        if (g->level == plant_simple && b % 2) grow_draw(g, 0, 1);
         else grow_leaf(g, at, along, n, length, wide);
     }
 }
@@ -228,7 +232,7 @@ static void grow_blades(Growth *g, int blades, double spread, double lean, doubl
 static void grow_stone(Growth *g)
 {
     enum { around = 8, rings = 5 };
-    const int turns = g->level ? around / 2 : around, levels = g->level ? 3 : rings;
+    const int turns = g->level == plant_simple ? around / 2 : around, levels = g->level == plant_simple ? 3 : rings;
     double    p[rings + 1][around][3];
     for (int j = 0; j <= rings; j++)
         for (int k = 0; k < around; k++) {

@@ -1,6 +1,7 @@
 /* render/trace/plants/plants_kept.h: prototypes as octets, for the cache.
  *
- * The struct Plants with its pointers 0, then the quads of each kind and level, as they lie in memory. */
+ * The struct Plants with its pointers 0, then the patterns of leaves, then the quads of each kind and level, as they
+ * lie in memory. */
 #ifndef RENDER_TRACE_PLANTS_PLANTS_KEPT_H
 #define RENDER_TRACE_PLANTS_PLANTS_KEPT_H
 

@@ -120,7 +120,7 @@ static void judge(PlantFigures *f, PlantRays *r, const PlantStress *s, const Sta
 static bool leaf_place(double p[3], double n[3], const Stand *stand, const Plants *plants, int i, Dice *dice)
 {
     const Plant      *plant = &stand->woods.plant[i];
-    const PlantShape *shape = &plants->shape[plant->kind][0];
+    const PlantShape *shape = &plants->shape[plant->kind][plant_whole];
     double            m[9], at[3], e[2][3], side[2][3], uv[2];
     if (shape->quads <= shape->bark_quads) return false;
     const PlantQuad *quad =

@@ -13,6 +13,7 @@ Status quality_woods_plant(Woods *woods, QualityMeasure *lab)
     const Config       config = config_default();
     const ForestConfig forest = {.leaves = true,
                                  .level1_px = config.terrain.woods_level1_px,
+                                 .fine = true,
                                  .sway = config.terrain.woods_sway,
                                  .tables = config.terrain.woods_tables};
     const HeatConfig   heat = heat_default_config();
