@@ -8,7 +8,7 @@
 
 /* ---- errors ----------------------------------------------------------------------------------- */
 
-static void latch_error(void *user, enum RTCError code, const char *text)
+void forest_latch_error(void *user, enum RTCError code, const char *text)
 {
     Forest *forest = user;
     int     none = RTC_ERROR_NONE;
@@ -16,7 +16,7 @@ static void latch_error(void *user, enum RTCError code, const char *text)
         log_warn("forest: Embree: %s", text ? text : "?");
 }
 
-static Status forest_status(const Forest *forest)
+Status forest_status(const Forest *forest)
 {
     const int code = __atomic_load_n(&forest->error, __ATOMIC_SEQ_CST);
     return code == RTC_ERROR_NONE ? STATUS_OK : code == RTC_ERROR_OUT_OF_MEMORY ? STATUS_NO_MEMORY : STATUS_UNSUPPORTED;
@@ -55,6 +55,8 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
         out->centre[c] = 0.5 * ((double)shape->low[c] + (double)shape->high[c]);
         out->half[c] = 0.5 * ((double)shape->high[c] - (double)shape->low[c]) + 1e-4;
     }
+    out->radius = sqrt(pow(fabs(out->centre[0]) + out->half[0], 2) + pow(fabs(out->centre[1]) + out->half[1], 2) +
+                       pow(fabs(out->centre[2] - 0.5) + out->half[2], 2));
     if (quads == 0) return STATUS_OK;
     find_reach(out, quads);
     RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_QUAD);
@@ -89,14 +91,15 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
 Status plant_list_commit(PlantList *list, const Forest *forest, bool quick)
 {
     if (list->count == 0) return STATUS_OK;
-    RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_USER);
+    const RTCDevice device = list->far ? forest->page_device : forest->device;
+    RTCGeometry     geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     if (!geometry) return STATUS_NO_MEMORY;
-    list->scene = rtcNewScene(forest->device);
+    list->scene = rtcNewScene(device);
     if (!list->scene) {
         rtcReleaseGeometry(geometry);
         return STATUS_NO_MEMORY;
     }
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)list->count);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)((list->count + list->per_box - 1) / list->per_box));
     rtcSetGeometryUserData(geometry, list);
     rtcSetGeometryBoundsFunction(geometry, plant_box, list);
     rtcSetGeometryIntersectFunction(geometry, plant_intersect);
@@ -137,7 +140,7 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
         free(forest);
         return STATUS_UNSUPPORTED;
     }
-    rtcSetDeviceErrorFunction(forest->device, latch_error, forest);
+    rtcSetDeviceErrorFunction(forest->device, forest_latch_error, forest);
     for (int a = 0; a <= shape_azimuths; a++) {
         forest->azimuth[a][0] = cos(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);
         forest->azimuth[a][1] = sin(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);
@@ -145,9 +148,10 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
     for (int kind = 0; kind < PLANT_KINDS && status == STATUS_OK; kind++)
         for (int level = 0; level < plant_levels && status == STATUS_OK; level++)
             status = build_shape(&forest->shape[kind][level], forest, kind, level);
-    forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count};
+    forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count, .per_box = 1};
     memcpy(forest->standing.origin_enu, woods->origin_enu, sizeof woods->origin_enu);
     if (status == STATUS_OK) status = plant_list_commit(&forest->standing, forest, false);
+    if (status == STATUS_OK) status = forest_pages_create(forest, isa);
     if (status != STATUS_OK) {
         forest_destroy(forest);
         return status;
@@ -162,8 +166,8 @@ Status forest_create_beside(Forest **out, const Forest *of, const Woods *woods)
     if (!forest) return STATUS_NO_MEMORY;
     *forest = *of;
     rtcRetainDevice(forest->device); /* errors of either are latched by `of` */
-    forest->borrows = true, forest->woods = woods, forest->error = RTC_ERROR_NONE;
-    forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count};
+    forest->borrows = true, forest->woods = woods, forest->error = RTC_ERROR_NONE, forest->pages = NULL;
+    forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count, .per_box = 1};
     memcpy(forest->standing.origin_enu, woods->origin_enu, sizeof woods->origin_enu);
     forest->squares = low_squares_create();
     Status status = forest->squares ? plant_list_commit(&forest->standing, forest, true) : STATUS_NO_MEMORY;
@@ -177,6 +181,7 @@ void forest_destroy(Forest *forest)
 {
     if (!forest) return;
     plant_list_close(&forest->standing);
+    forest_pages_destroy(forest);
     for (int kind = 0; kind < PLANT_KINDS && !forest->borrows; kind++)
         for (int level = 0; level < plant_levels; level++)
             if (forest->shape[kind][level].scene) rtcReleaseScene(forest->shape[kind][level].scene);
@@ -198,10 +203,16 @@ Status forest_frame_open(ForestFrame *out, const Forest *forest, const double ey
     *out = (ForestFrame){.forest = forest, .per_rad = per_rad, .low_reach_m = low_reach_m, .t_s = t_s};
     memcpy(out->eye_enu, eye_enu, sizeof out->eye_enu);
     memcpy(out->wind_mps, wind_mps, sizeof out->wind_mps);
-    return low_reach_m > 0 ? low_plants_open(out, low_reach_m, pool, arena) : STATUS_OK;
+    const Status status = far_pages_open(out, pool);
+    if (status != STATUS_OK || !(low_reach_m > 0)) return status;
+    return low_plants_open(out, low_reach_m, pool, arena);
 }
 
-void forest_frame_close(ForestFrame *frame) { low_plants_close(frame); }
+void forest_frame_close(ForestFrame *frame)
+{
+    low_plants_close(frame);
+    far_pages_close(frame);
+}
 
 /* The whole crown leans with the wind's pressure, which grows with its square, and swings about that at its natural
  * frequency: 0.3 Hz at 15 m, in inverse proportion to the height (Moore & Maguire, Trees 18, 195, 2004: 0.1 to 0.5 Hz

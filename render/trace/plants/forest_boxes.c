@@ -41,18 +41,16 @@ static double box_along(const ShapeScene *shape, const double along[3])
 }
 
 /* Tight boxes cost as much as a ray each: worth it for those that stand for many frames. */
-void plant_box(const struct RTCBoundsFunctionArguments *a)
+static void box_of(double low[3], double high[3], const PlantList *list, const Plant *plant)
 {
     static const double room_m = 0.02; /* of a float 16 km from the origin, twenty times */
-    const PlantList    *list = a->geometryUserPtr;
-    const Plant        *plant = &list->plant[a->primID];
     const ShapeScene   *level[plant_levels] = {&list->forest->shape[plant->kind][0],
                                                &list->forest->shape[plant->kind][1]};
     const double        swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
-    double              m[9], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    float              *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
+    double              m[9];
+    for (int c = 0; c < 3; c++) low[c] = INFINITY, high[c] = -INFINITY;
     plant_transform(m, plant, NULL);
-    double (*const reach)(const ShapeScene *, const double[3]) = list->frame ? box_along : reach_along;
+    double (*const reach)(const ShapeScene *, const double[3]) = list->frame || list->far ? box_along : reach_along;
     for (int l = 0; l < plant_levels; l++) {
         if (!level[l]->scene) continue;
         for (int c = 0; c < 3; c++) {
@@ -65,8 +63,20 @@ void plant_box(const struct RTCBoundsFunctionArguments *a)
     }
     for (int c = 0; c < 3; c++) /* of a kind without quads */
         if (!(low[c] <= high[c])) low[c] = high[c] = 0;
-    for (int c = 0; c < 3; c++) {
-        bound[0][c] = (float)((double)plant->p_m[c] + low[c]);
-        bound[1][c] = (float)((double)plant->p_m[c] + high[c]);
+    for (int c = 0; c < 3; c++) low[c] += (double)plant->p_m[c], high[c] += (double)plant->p_m[c];
+}
+
+void plant_box(const struct RTCBoundsFunctionArguments *a)
+{
+    const PlantList *list = a->geometryUserPtr;
+    const int        first = (int)a->primID * list->per_box, end = first + list->per_box;
+    float           *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
+    for (int k = first; k < end && k < list->count; k++) {
+        double low[3], high[3];
+        box_of(low, high, list, &list->plant[k]);
+        for (int c = 0; c < 3; c++) {
+            if (k == first || (float)low[c] < bound[0][c]) bound[0][c] = (float)low[c];
+            if (k == first || (float)high[c] > bound[1][c]) bound[1][c] = (float)high[c];
+        }
     }
 }

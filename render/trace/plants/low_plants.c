@@ -174,7 +174,7 @@ Status low_plants_open(ForestFrame *frame, double reach_m, Pool *pool, Arena *ar
     LowPlants   *low = arena_alloc(arena, 1, sizeof *low);
     double       from[2], end[2];
     if (!low) return STATUS_NO_MEMORY;
-    *low = (LowPlants){.frame = frame, .list = {.forest = frame->forest, .frame = frame}};
+    *low = (LowPlants){.frame = frame, .list = {.forest = frame->forest, .frame = frame, .per_box = 1}};
     memcpy(low->list.origin_enu, woods->origin_enu, sizeof low->list.origin_enu);
     for (int k = 0; k < 2; k++) {
         const double eye_m = frame->eye_enu[k] - woods->origin_enu[k];

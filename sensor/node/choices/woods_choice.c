@@ -103,7 +103,8 @@ typedef struct Paths {
 static void add_path(Paths *p, const double a_m[2], const double b_m[2], double half_m, double low_half_m)
 {
     /* plants stand in whole squares, which reach beyond */
-    const double *c = p->square->centre_m, reach_m = p->square->half_width_m + 2 * woods_square_m + half_m;
+    const double *c = p->square->centre_m,
+                 reach_m = fmax(p->square->half_width_m, p->square->far_half_m) + 2 * woods_square_m + half_m;
     for (int k = 0; k < 2; k++) /* both ends beyond the same side of the square */
         if ((a_m[k] - c[k] > reach_m && b_m[k] - c[k] > reach_m) ||
             (a_m[k] - c[k] < -reach_m && b_m[k] - c[k] < -reach_m))
@@ -281,6 +282,7 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
     const Catalog        *catalog = basis->catalog;
     const GroundEvidence *e = basis->evidence;
     const bool            stored = *config->terrain.store, real = stored || *config->terrain.elevation;
+    static const double   far_half_m = 50000; /* of any distance of terrain.woods_far_m about any sensor near by */
     int                   impacts = 0;
     *out = (WoodsChoice){.on = config->terrain.woods};
     if (!out->on) return STATUS_OK;
@@ -288,6 +290,7 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
                                 .centre_m = {square->centre_m[0], square->centre_m[1]},
                                 .half_width_m = square->half_width_m,
                                 .most_trees = config->terrain.woods_trees,
+                                .far_half_m = square->own ? 0 : far_half_m,
                                 .store = stored ? config->terrain.store : NULL,
                                 .cache = real ? NULL : basis->cache, /* files may change and keep their names */
                                 .follows = basis->follows};
