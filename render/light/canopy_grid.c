@@ -132,7 +132,7 @@ const CanopyCell *canopy_page_cell(const Canopy *c, double i, double j)
     if (page < 0 || woods_is_planted(woods, x_m, y_m)) return NULL;
     const CanopyCell *cell = cells_of_page(c->pages, page);
     const int         a = (int)floor((x_m - woods->pages_enu[0]) / canopy_cell_m) % page_side,
-                      b = (int)floor((y_m - woods->pages_enu[1]) / canopy_cell_m) % page_side;
+              b = (int)floor((y_m - woods->pages_enu[1]) / canopy_cell_m) % page_side;
     return cell ? &cell[b * page_side + a] : NULL;
 }
 

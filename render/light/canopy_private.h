@@ -41,7 +41,7 @@ Status canopy_fill_grid(const CanopyGrid *grid, const double origin_enu[3], cons
 /* The cell of a page at whole numbers of cells from the woods' corner; NULL: the woods' own is there, or none. c has
  * pages. */
 const CanopyCell *canopy_page_cell(const Canopy *c, double i, double j);
-double            canopy_pages_reach_m(const Canopy *c); /* 0: it has none */
+double            canopy_pages_reach_m(const Canopy *c);    /* 0: it has none */
 void              canopy_pages_destroy(CanopyPages *pages); /* accepts NULL */
 
 #endif

@@ -314,7 +314,7 @@ enum { config_paths_size = 4096 };
         "ground") \
     ROW(INT, terrain., woods_trees, 300000, 0, woods_most_trees, "", \
         "most trees, bushes and hedges; beyond, those farthest from what is on the ground are left out") \
-    ROW(DOUBLE, terrain., woods_far_m, 12000, 0, 50000, "m", \
+    ROW(DOUBLE, terrain., woods_far_m, 25000, 0, 50000, "m", \
         "distance from the sensor within which the plants stand that woods_trees leaves out, fewer from four fifths of " \
         "it on; 0: none") \
     ROW(DOUBLE, terrain., woods_far_mb, 600, 16, 100000, "MB", \

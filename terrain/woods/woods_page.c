@@ -95,7 +95,7 @@ static uint32_t code_of(const Plant *p)
 {
     const uint32_t x = (uint32_t)clamp((double)p->p_m[0] / woods_cell_m, 0, 255),
                    y = (uint32_t)clamp((double)p->p_m[1] / woods_cell_m, 0, 255);
-    uint32_t       code = 0;
+    uint32_t code = 0;
     for (int k = 0; k < 8; k++) code |= (x >> k & 1) << 2 * k | (y >> k & 1) << (2 * k + 1);
     return code;
 }
@@ -132,7 +132,7 @@ static Status place(WoodsPage *out, const Woods *woods, double high_m)
     const WoodsPages *pages = woods->far;
     WoodsSource       s = *pages->source; /* with another origin; what it points to is only read */
     SquarePlants      all = {0};
-    const int64_t     i0 = llrint(out->origin_enu[0] / woods_square_m), j0 = llrint(out->origin_enu[1] / woods_square_m);
+    const int64_t i0 = llrint(out->origin_enu[0] / woods_square_m), j0 = llrint(out->origin_enu[1] / woods_square_m);
     memcpy(s.origin_enu, out->origin_enu, sizeof s.origin_enu);
     for (int k = 0; k < woods_page_squares * woods_page_squares; k++) {
         const int64_t i = i0 + k % woods_page_squares, j = j0 + k / woods_page_squares;
@@ -188,7 +188,9 @@ Status woods_page(WoodsPage *out, const Woods *woods, int page)
         free(octets);
     }
     const Status status = place(out, woods, high_m);
-    if (status == STATUS_OK) cache_keep(pages->cache, &key, out->plant ? (const void *)out->plant : "", (size_t)out->count * sizeof *out->plant);
+    if (status == STATUS_OK)
+        cache_keep(pages->cache, &key, out->plant ? (const void *)out->plant : "",
+                   (size_t)out->count * sizeof *out->plant);
     return status;
 }
 

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static Landscape    landscape;
-static Woods        all, some; /* a list of every plant of a square; a list of few of them, and pages */
-static double       eye_enu[3];
+static Landscape landscape;
+static Woods     all, some; /* a list of every plant of a square; a list of few of them, and pages */
+static double    eye_enu[3];
 
 static int open_all(void **state)
 {
@@ -83,10 +83,10 @@ typedef struct Tracing {
 
 static void trace_block(void *user, int worker, int task)
 {
-    const Tracing *t = user;
-    const int      first = (t->backwards ? rays / block - 1 - task : task) * block;
+    const Tracing              *t = user;
+    const int                   first = (t->backwards ? rays / block - 1 - task : task) * block;
     static _Thread_local double o[3][block], d[3][block], far_m[block];
-    Met *const     m = t->met;
+    Met *const                  m = t->met;
     (void)worker;
     for (int k = 0; k < block; k++) {
         double from[3], along[3];
@@ -154,8 +154,8 @@ static void compare(const Forest *paged, const ForestFrame *in_pages, const Fore
         }
         if (!(b->range_m[i] < (i % block % 7 ? INFINITY : 700))) continue;
         met++, of_pages += woods_page_of(a->hit[i].plant) >= 0;
-        assert_true(a->hit[i].kind == b->hit[i].kind &&
-                    a->hit[i].back == b->hit[i].back && a->hit[i].level == b->hit[i].level);
+        assert_true(a->hit[i].kind == b->hit[i].kind && a->hit[i].back == b->hit[i].back &&
+                    a->hit[i].level == b->hit[i].level);
         foot_of(p, paged, a->hit[i].plant);
         for (int c = 0; c < 3; c++) CHECK_NEAR(p[c], all.origin_enu[c] + (double)want->p_m[c], 5e-4);
     }
@@ -244,9 +244,9 @@ static void leaves_and_returns(void **state)
 
 /* ---- towards far_m ---------------------------------------------------------------------------- */
 
-/* Rays across the trunk of every plant of the pages, at a tenth of its height: of those nearer than 0.8 far_m each stands; beyond far_m none;
- * between, by (1 - r) / 0.2 of r = distance / far_m, over a ring's area
- *     int_0.8^1 5 (1 - r) r dr / int_0.8^1 r dr = 0.08667 / 0.18 = 0.4815. */
+/* Rays across the trunk of every plant of the pages, at a tenth of its height: of those nearer than 0.8 far_m each
+ * stands; beyond far_m none; between, by (1 - r) / 0.2 of r = distance / far_m, over a ring's area int_0.8^1 5 (1 - r)
+ * r dr / int_0.8^1 r dr = 0.08667 / 0.18 = 0.4815. */
 static void thins_out(void **state)
 {
     ForestConfig config = every_one;

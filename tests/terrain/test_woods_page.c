@@ -65,8 +65,8 @@ static int add(Placed *out, int count, const Plant *plant, int plants, const dou
 
 static int pages_of(const Woods *w) { return w->pages_x * w->pages_y; }
 
-/* What the list has and what pages have are together what a list of all has, which other tests hold to the table and the
- * ground: by kind, size, turn and place, within the rounding of floats 3 km from an origin (0.12 mm a step). */
+/* What the list has and what pages have are together what a list of all has, which other tests hold to the table and
+ * the ground: by kind, size, turn and place, within the rounding of floats 3 km from an origin (0.12 mm a step). */
 static void every_plant_once(void **state)
 {
     const WoodsConfig all_of = about(false), some_of = about(true);
@@ -100,7 +100,8 @@ static void every_plant_once(void **state)
     for (int k = 0; k < count; k++) {
         const Plant *p = &want[k].plant, *q = &got[k].plant;
         assert_true(p->twist == q->twist && p->height == q->height);
-        if (k > 0 && compare(&want[k - 1], &want[k]) == 0) continue; /* of two of one turn and height either may be first */
+        if (k > 0 && compare(&want[k - 1], &want[k]) == 0)
+            continue; /* of two of one turn and height either may be first */
         if (k + 1 < count && compare(&want[k], &want[k + 1]) == 0) continue;
         assert_true(p->kind == q->kind && p->width == q->width && p->lean[0] == q->lean[0]);
         for (int c = 0; c < 3; c++) CHECK_NEAR(got[k].p_enu[c], want[k].p_enu[c], 3e-4);
@@ -123,7 +124,8 @@ static void numbers(void **state)
     CHECK(woods_page_of(woods_most_trees - 1) < 0);
     CHECK((uint64_t)woods_page_number(last) + woods_page_most <= (uint64_t)1 << 31);
     for (int k = 0; k <= last; k += 97)
-        CHECK(woods_page_of(woods_page_number(k)) == k && woods_page_of(woods_page_number(k) + woods_page_most - 1) == k);
+        CHECK(woods_page_of(woods_page_number(k)) == k &&
+              woods_page_of(woods_page_number(k) + woods_page_most - 1) == k);
     assert_int_equal(woods_page_at(&w, 1e9, 0), -1);
     assert_int_equal(woods_page_at(&w, NAN, 0), -1);
     woods_destroy(&w);
@@ -217,8 +219,7 @@ static void kept(void **state)
     assert_int_equal(woods_create(&w, &landscape, &config, NULL), STATUS_OK);
     WoodsPage other;
     assert_int_equal(woods_page(&other, &w, pages_of(&w) / 2), STATUS_OK);
-    CHECK(other.count != page[0].count ||
-          memcmp(other.plant, page[0].plant, (size_t)other.count * sizeof(Plant)) != 0);
+    CHECK(other.count != page[0].count || memcmp(other.plant, page[0].plant, (size_t)other.count * sizeof(Plant)) != 0);
     woods_page_free(&other);
     woods_destroy(&w);
     for (int k = 0; k < 4; k++) woods_page_free(&page[k]);

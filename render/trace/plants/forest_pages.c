@@ -2,16 +2,17 @@
  * frame does. */
 #include "render/trace/plants/forest_private.h"
 
+#include <inttypes.h>
 #include <pthread.h>
 #include <stdlib.h>
 
 enum { span_unknown, span_none, span_known };
 
 typedef struct ForestPage {
-    pthread_mutex_t lock;      /* of making and freeing */
-    uint64_t        used;      /* atomic: serial of the latest frame that needed it; set before made is read */
-    int             made;      /* atomic */
-    int             span;      /* under the lock of all, as what follows */
+    pthread_mutex_t lock; /* of making and freeing */
+    uint64_t        used; /* atomic: serial of the latest frame that needed it; set before made is read */
+    int             made; /* atomic */
+    int             span; /* under the lock of all, as what follows */
     double          low_m, high_m;
     WoodsPage       woods;
     PlantList       list;
@@ -73,6 +74,9 @@ void forest_pages_destroy(Forest *forest)
 {
     ForestPages *pages = forest->pages;
     if (!pages) return;
+    if (pages->made > 0)
+        log_detail("woods: pages made %" PRIu64 " times, freed %" PRIu64 " times; %.1f MB at the end", pages->made,
+                   pages->freed, 1e-6 * (double)pages->octets);
     for (int k = 0; k < pages->count; k++) {
         if (pages->page[k].made) free_page(pages, &pages->page[k]);
         pthread_mutex_destroy(&pages->page[k].lock);
@@ -95,7 +99,7 @@ ForestPagesUse forest_pages_use(const Forest *forest)
 
 static bool make(Forest *forest, ForestPage *page, int number)
 {
-    enum { neighbours = 4 }; /* a quarter of Embree's memory, for 1.1 to 1.3 of the boxes' time */
+    enum { neighbours = 4 }; /* to a box: a quarter of Embree's memory and of the time to build it */
     ForestPages *pages = forest->pages;
     Status       status = woods_page(&page->woods, forest->woods, number);
     __atomic_fetch_add(&pages->octets, (int64_t)page->woods.count * (int64_t)sizeof(Plant), __ATOMIC_RELAXED);
@@ -218,7 +222,8 @@ void far_page_box(double low_enu[3], double high_enu[3], const PagesInReach *r, 
         low_enu[c] = woods->pages_enu[c] + at[c] * woods_page_m - room_m;
         high_enu[c] = low_enu[c] + woods_page_m + 2 * room_m;
     }
-    low_enu[2] = r->forest->pages->page[page].low_m - room_m, high_enu[2] = r->forest->pages->page[page].high_m + room_m;
+    low_enu[2] = r->forest->pages->page[page].low_m - room_m,
+    high_enu[2] = r->forest->pages->page[page].high_m + room_m;
 }
 
 static void bounds_of_page(const struct RTCBoundsFunctionArguments *a)

@@ -13,8 +13,8 @@ static bool enter_page(PageRay *out, const ListRay *ray, const PagesInReach *pag
     double low[3], high[3], start[3], from_m = 0, to_m = smaller(ray->limit_m, ray->piece_end_m) - ray->piece_m;
     far_page_box(low, high, pages, k);
     for (int c = 0; c < 3; c++) start[c] = ray->o_enu[c] + ray->piece_m * ray->d_enu[c];
-    start[2] -= ray->bend_per_m * (ray->d_enu[0] * ray->d_enu[0] + ray->d_enu[1] * ray->d_enu[1]) * ray->piece_m *
-                ray->piece_m;
+    start[2] -=
+        ray->bend_per_m * (ray->d_enu[0] * ray->d_enu[0] + ray->d_enu[1] * ray->d_enu[1]) * ray->piece_m * ray->piece_m;
     for (int c = 0; c < 3; c++) {
         const double per = fabs(ray->piece_d[c]) < 1e-30 ? 1e30 : 1 / ray->piece_d[c];
         const double a = (low[c] - start[c]) * per, b = (high[c] - start[c]) * per;
@@ -142,9 +142,9 @@ static bool over_plants(double span_m[2], const ListRay *ray, const struct RTCBo
 static void first_hit_bent(ListRay *ray, const PlantScene *list)
 {
     const struct RTCBounds *bounds = &list->bounds;
-    static const double piece_m = 1600, nearest = 1e-4;
-    const double        top_m = (double)bounds->upper_z + 1;
-    double              o[3], span_m[2];
+    static const double     piece_m = 1600, nearest = 1e-4;
+    const double            top_m = (double)bounds->upper_z + 1;
+    double                  o[3], span_m[2];
     start_of(o, ray, list);
     if (!over_plants(span_m, ray, bounds, o)) return;
     const double square = ray->d_enu[0] * ray->d_enu[0] + ray->d_enu[1] * ray->d_enu[1];

@@ -1,5 +1,5 @@
-/* render/trace/plants/forest_rays_private.h: a ray on its way through lists of plants, shared by forest_trace.c (plants),
- * forest_rays.c (lists and pages) and forest_surface.c. */
+/* render/trace/plants/forest_rays_private.h: a ray on its way through lists of plants, shared by forest_trace.c
+ * (plants), forest_rays.c (lists and pages) and forest_surface.c. */
 #ifndef RENDER_TRACE_PLANTS_FOREST_RAYS_PRIVATE_H
 #define RENDER_TRACE_PLANTS_FOREST_RAYS_PRIVATE_H
 
@@ -29,8 +29,8 @@ typedef struct ListRay {
     const ForestFrame         *frame;
     bool                       real;
     double                     o_enu[3], d_enu[3];
-    double                     limit_m;             /* of what may still be nearer */
-    double                     bend_per_m, piece_m; /* of a bent ray; where the piece that Embree has begins */
+    double                     limit_m;                 /* of what may still be nearer */
+    double                     bend_per_m, piece_m;     /* of a bent ray; where the piece that Embree has begins */
     double                     piece_end_m, piece_d[3]; /* where it ends, and its direction */
     bool                       met;
     const PlantList           *met_in;

@@ -247,17 +247,23 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
 {
     const Woods *woods = &w->woods;
     const int    trees = trees_of(woods);
+    const char  *about = w->config.place_count ? "what is on the ground" : "the middle of the square";
     char         kinds[100];
     kinds_text(kinds, sizeof kinds, woods);
     choice_add(choices, "woods: %d trees%s%s%s, %d bushes and hedges, %.1f km about the %s (terrain.woods)", trees,
                *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m,
                config->terrain.woods_half_m >= 50 ? "aim" : "exercise");
-    if (woods->left_out > 0)
+    if (woods->left_out > 0 && woods->far && config->terrain.woods_far_m > 0)
+        choice_add(
+            choices,
+            "woods: %d more, those beyond %.0f m of %s, and others farther out are placed when a frame needs them, "
+            "within %.0f km of the sensor (terrain.woods_trees, woods_far_m)",
+            woods->left_out, woods->reach_m, about, 1e-3 * config->terrain.woods_far_m);
+    else if (woods->left_out > 0)
         choice_add(
             choices,
             "woods: %d more are left out, those beyond %.0f m of %s: the ground there shows their canopy (terrain.woods_trees)",
-            woods->left_out, woods->reach_m,
-            w->config.place_count ? "what is on the ground" : "the middle of the square");
+            woods->left_out, woods->reach_m, about);
     if (!real)
         choice_add(choices,
                    "woods: cleared along the paths of %d entit%s on the ground, where %d shot%s hit it, and "
