@@ -224,8 +224,10 @@ static void leaves_and_returns(void **state)
     ForestFrame    there = open_at(forest, 700, 500, 0, 0);
     Met           *away = trace(&there, false, NULL);
     forest_frame_close(&there);
-    Met *still = trace(&here, true, NULL); /* after another frame closed */
+    const uint64_t both = forest_pages_use(forest).made;
+    Met           *still = trace(&here, true, NULL); /* after another frame closed */
     check_same(still, want);
+    CHECK(forest_pages_use(forest).made == both); /* its pages stayed */
     CHECK(made > 0 && forest_pages_use(forest).freed < forest_pages_use(forest).made);
     forest_frame_close(&here);
     CHECK(forest_pages_use(forest).freed == forest_pages_use(forest).made);
