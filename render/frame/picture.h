@@ -143,7 +143,7 @@ typedef struct Picture {
     float    *range_m;          /* +inf: sky */
     uint32_t *entity;           /* snapshot index + 1; 0: none */
     uint32_t *part, *material;  /* + 1; 0: none */
-    uint32_t *instance;         /* plant: 1 + its index in the woods; low plants: forest_low_bit and a number; 0:
+    uint32_t *instance;         /* plant: 1 + ForestHit.plant; low plants: forest_low_bit and a number; 0:
                                  * none. NULL where the world has no plants */
     uint8_t       *cover;       /* SurfaceClass of the ground that is seen, 0: none is */
     float         *temp_k;      /* NaN: sky */

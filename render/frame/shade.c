@@ -97,7 +97,7 @@ void shade_samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, co
 static bool raise_far(double z_m[hits_capacity], Shader *shader, const ShadeScene *scene, Hits *hits)
 {
     const FarWoods *far = scene->world->far_woods;
-    if (!scene->far || !far_woods_find(&shader->far, far, hits)) return false;
+    if (!scene->far || !far_woods_find(&shader->far, far, &scene->plants, hits)) return false;
     memcpy(z_m, hits->p_enu[2], (size_t)hits->count * sizeof *z_m);
     for (int i = 0; i < hits->count; i++)
         if (shader->far.stand[i]) hits->p_enu[2][i] += far_woods_top_m(far, shader->far.stand[i] - 1);
@@ -242,7 +242,7 @@ static void restore_normals(const Shader *shader, Hits *hits)
 static void find_far(Shader *shader, const ShadeScene *scene, const Samples *s)
 {
     const size_t n = (size_t)s->hits.count;
-    shader->any_far = scene->far && far_woods_find(&shader->far, scene->world->far_woods, &s->hits);
+    shader->any_far = scene->far && far_woods_find(&shader->far, scene->world->far_woods, &scene->plants, &s->hits);
     if (!shader->any_far) return;
     FarInputs in = {.places = &shader->far,
                     .sun = s->sun,

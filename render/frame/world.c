@@ -109,6 +109,7 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
     if (!whole) finish_plants(world, &key, pool);
     const PlantsKept kept = {*key.name ? world->cache : NULL, key.name};
     status = canopy_create_kept(&world->canopy, woods, world->plants, &world->materials, config->leaves, &kept);
+    if (status == STATUS_OK) status = canopy_see_pages(world->canopy, world->forest, config->leaves);
     if (status != STATUS_OK) return status;
     return far_woods_create(&world->far_woods, woods, world->forest, &world->materials, config->leaves, &kept, pool);
 }

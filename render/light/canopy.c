@@ -1,28 +1,7 @@
 /* render/light/canopy.c: leaf area and heights of the woods on a grid, and the light among them. */
-#include "render/light/canopy.h"
+#include "render/light/canopy_private.h"
 
 #include <stdlib.h>
-
-static const double cell_m = 8;
-static const double leaf_area_step = 1.0 / 16, top_step_m = 0.25;
-
-typedef struct CanopyCell {
-    uint8_t leaf_area; /* of leaf_area_step */
-    uint8_t top, base; /* of top_step_m, above the ground */
-    uint8_t spare;
-} CanopyCell;
-
-enum { gap_steps = 512 };
-static const double gap_most = 16; /* 2 E3 of it is 1e-8 */
-
-struct Canopy {
-    int         nx, ny;
-    double      x0_m, y0_m;
-    CanopyCell *cell;
-    float       gap[gap_steps + 2];
-    double      open_up, open_down;               /* of a leaf or branch, the mean of all */
-    double      scattered[optical_channel_count]; /* w */
-};
 
 /* ---- closed form ------------------------------------------------------------------------------ */
 
@@ -46,39 +25,7 @@ static double gap_at(const Canopy *c, double x)
     return (double)c->gap[i] + (at - i) * ((double)c->gap[i + 1] - (double)c->gap[i]);
 }
 
-/* ---- the grid --------------------------------------------------------------------------------- */
-
-typedef struct Sum {
-    float area;      /* m2 of leaves */
-    float top, base; /* weighted by it */
-} Sum;
-
-/* A plant's leaves go to the cells under its crown, evenly. */
-static void add_plant(Sum *sum, const Canopy *c, const Woods *woods, const Plants *plants, const Plant *plant,
-                      bool leaves)
-{
-    const PlantShape *shape = &plants->shape[plant->kind][plant_whole];
-    const double      height_m = plant_height_m(plant), wide = plant->width / 128.0;
-    const double      area = (double)shape->leaf_area * height_m * height_m * wide;
-    const double      r = (double)shape->crown_radius * height_m * wide;
-    const double      x = (double)plant->p_m[0] + woods->origin_enu[0] - c->x0_m;
-    const double      y = (double)plant->p_m[1] + woods->origin_enu[1] - c->y0_m;
-    if (!leaves && plant_is_deciduous((PlantKind)plant->kind)) return;
-    const int i0 = (int)clamp(floor((x - r) / cell_m), 0, c->nx - 1),
-              i1 = (int)clamp(floor((x + r) / cell_m), 0, c->nx - 1);
-    const int j0 = (int)clamp(floor((y - r) / cell_m), 0, c->ny - 1),
-              j1 = (int)clamp(floor((y + r) / cell_m), 0, c->ny - 1);
-    for (int j = j0; j <= j1; j++)
-        for (int i = i0; i <= i1; i++) {
-            const double across = fmin(x + r, (i + 1) * cell_m) - fmax(x - r, i * cell_m);
-            const double along = fmin(y + r, (j + 1) * cell_m) - fmax(y - r, j * cell_m);
-            const double share = r > 0 ? fmax(across, 0) * fmax(along, 0) / (4 * r * r) : 1;
-            Sum         *to = &sum[(size_t)j * (size_t)c->nx + (size_t)i];
-            to->area += (float)(share * area);
-            to->top += (float)(share * area * height_m);
-            to->base += (float)(share * area * height_m * (double)shape->crown_low);
-        }
-}
+/* ---- the woods' own light ---------------------------------------------------------------------- */
 
 /* Areas of a prototype that light meets on its way, half of the leaves' and a quarter of the branches', each as far as
  * it is open: what lies deep in the crown neither gets nor gives much. open_up, open_down: their sums over these areas.
@@ -178,7 +125,7 @@ Status canopy_create_bare(Canopy **out, const Woods *woods)
 {
     Canopy *c = calloc(1, sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    const int per_square = (int)(woods_square_m / cell_m);
+    const int per_square = (int)(woods_square_m / canopy_cell_m);
     c->nx = woods->nx * per_square, c->ny = woods->ny * per_square;
     c->x0_m = woods->origin_enu[0], c->y0_m = woods->origin_enu[1];
     c->cell = calloc(cells_of(c) + 1, sizeof *c->cell);
@@ -192,20 +139,10 @@ Status canopy_create_bare(Canopy **out, const Woods *woods)
 
 static Status fill(Canopy *c, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
 {
-    const size_t cells = cells_of(c);
-    Sum         *sum = calloc(cells + 1, sizeof *sum);
-    if (!sum) return STATUS_NO_MEMORY;
+    const CanopyGrid grid = {c->cell, c->nx, c->ny, c->x0_m, c->y0_m};
     for (int k = 0; k < gap_steps + 2; k++) c->gap[k] = (float)canopy_gap(gap_most * k / gap_steps);
-    for (int k = 0; k < woods->count && cells > 0; k++) add_plant(sum, c, woods, plants, &woods->plant[k], leaves);
     average(c, woods, plants, materials, leaves);
-    for (size_t n = 0; n < cells; n++) {
-        if (!(sum[n].area > 0)) continue;
-        c->cell[n].leaf_area = (uint8_t)fmin(rint((double)sum[n].area / (cell_m * cell_m) / leaf_area_step), 255);
-        c->cell[n].top = (uint8_t)fmin(rint((double)(sum[n].top / sum[n].area) / top_step_m), 255);
-        c->cell[n].base = (uint8_t)fmin(rint((double)(sum[n].base / sum[n].area) / top_step_m), 255);
-    }
-    free(sum);
-    return STATUS_OK;
+    return canopy_fill_grid(&grid, woods->origin_enu, woods->plant, woods->count, plants, leaves);
 }
 
 Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
@@ -236,6 +173,7 @@ Status canopy_create_kept(Canopy **out, const Woods *woods, const Plants *plants
 void canopy_destroy(Canopy *canopy)
 {
     if (!canopy) return;
+    canopy_pages_destroy(canopy->pages);
     free(canopy->cell);
     free(canopy);
 }
@@ -247,23 +185,32 @@ static double above_cell(const CanopyCell *cell, double height_m)
     return leaf_area_step * cell->leaf_area * (height_m <= base ? 1 : (top - height_m) / (top - base));
 }
 
-/* Straight between the middles of cells. */
-double canopy_leaf_area_above(const Canopy *c, double x_m, double y_m, double height_m)
+/* Straight between the middles of cells. pages: their plants too. */
+static double leaf_area_above(const Canopy *c, double x_m, double y_m, double height_m, bool pages)
 {
-    const double x = (x_m - c->x0_m) / cell_m - 0.5, y = (y_m - c->y0_m) / cell_m - 0.5, i = floor(x), j = floor(y);
+    const double x = (x_m - c->x0_m) / canopy_cell_m - 0.5, y = (y_m - c->y0_m) / canopy_cell_m - 0.5;
+    const double i = floor(x), j = floor(y);
     double       sum = 0;
-    if (!(i >= 0 && j >= 0 && i < c->nx - 1 && j < c->ny - 1)) return 0;
+    if (!pages && !(i >= 0 && j >= 0 && i < c->nx - 1 && j < c->ny - 1)) return 0;
     for (int k = 0; k < 4; k++) {
-        const double share = (k & 1 ? x - i : 1 - (x - i)) * (k & 2 ? y - j : 1 - (y - j));
-        const size_t cell = ((size_t)j + (size_t)(k >> 1)) * (size_t)c->nx + (size_t)i + (size_t)(k & 1);
-        sum += share * above_cell(&c->cell[cell], height_m);
+        const double      share = (k & 1 ? x - i : 1 - (x - i)) * (k & 2 ? y - j : 1 - (y - j));
+        const double      a = i + (k & 1), b = j + (k >> 1);
+        const CanopyCell *cell = NULL;
+        if (a >= 0 && b >= 0 && a < c->nx && b < c->ny) cell = &c->cell[(size_t)b * (size_t)c->nx + (size_t)a];
+        if (pages && (!cell || cell->leaf_area == 0)) cell = canopy_page_cell(c, a, b);
+        if (cell) sum += share * above_cell(cell, height_m);
     }
     return sum;
 }
 
+double canopy_leaf_area_above(const Canopy *c, double x_m, double y_m, double height_m)
+{
+    return leaf_area_above(c, x_m, y_m, height_m, false);
+}
+
 void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
 {
-    const double x = floor((x_m - c->x0_m) / cell_m), y = floor((y_m - c->y0_m) / cell_m);
+    const double x = floor((x_m - c->x0_m) / canopy_cell_m), y = floor((y_m - c->y0_m) / canopy_cell_m);
     *out = (CanopyStand){.open = 1};
     if (!(x >= 0 && y >= 0 && x < c->nx && y < c->ny)) return;
     const CanopyCell *cell = &c->cell[(size_t)y * (size_t)c->nx + (size_t)x];
@@ -274,10 +221,11 @@ void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
 
 /* ---- hits ------------------------------------------------------------------------------------- */
 
-bool canopy_place(CanopyPlace *out, const Canopy *c, double x_m, double y_m, double height_m, double sin_sun)
+static bool place_at(CanopyPlace *out, const Canopy *c, const double p_m[2], double height_m, double sin_sun,
+                     bool pages)
 {
-    const double all = canopy_leaf_area_above(c, x_m, y_m, 0);
-    const double above = height_m > 0 ? canopy_leaf_area_above(c, x_m, y_m, height_m) : all;
+    const double all = leaf_area_above(c, p_m[0], p_m[1], 0, pages);
+    const double above = height_m > 0 ? leaf_area_above(c, p_m[0], p_m[1], height_m, pages) : all;
     const double slant = 0.5 / fmax(sin_sun, 0.05);
     if (!(all > 0)) {
         *out = (CanopyPlace){1, 1, 1, 1, 1};
@@ -289,6 +237,11 @@ bool canopy_place(CanopyPlace *out, const Canopy *c, double x_m, double y_m, dou
                          .sun_here = exp(-slant * above),
                          .sun_on_ground = exp(-slant * all)};
     return true;
+}
+
+bool canopy_place(CanopyPlace *out, const Canopy *c, double x_m, double y_m, double height_m, double sin_sun)
+{
+    return place_at(out, c, (const double[2]){x_m, y_m}, height_m, sin_sun, false);
 }
 
 void canopy_place_of_plant(CanopyPlace *p, const Canopy *c)
@@ -319,7 +272,7 @@ double canopy_exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlac
 bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape, const Daylight *light,
                   const float ground_rho[optical_channel_count], const Hits *hits, unsigned channels)
 {
-    const double sin_sun = fmax(light->sun_d_enu[2], 0);
+    const double sin_sun = fmax(light->sun_d_enu[2], 0), reach_m = canopy_pages_reach_m(c);
     bool         any = false;
     CanopyPlace  place[hits_capacity];
     for (int i = 0; i < hits->count; i++) {
@@ -329,7 +282,8 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
         if (!(hits->range_m[i] < INFINITY)) continue;
         if (hits->kind[i] != hit_ground && landscape)
             height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
-        any |= canopy_place(&place[i], c, x_m, y_m, isfinite(height_m) ? height_m : 0, sin_sun) |
+        const bool pages = reach_m > 0 && (hits->kind[i] == hit_plant || hits->range_m[i] < reach_m);
+        any |= place_at(&place[i], c, (const double[2]){x_m, y_m}, isfinite(height_m) ? height_m : 0, sin_sun, pages) |
                (hits->kind[i] == hit_plant);
     }
     if (!any) return false;

@@ -23,6 +23,7 @@
 
 #include "render/air/air.h"
 #include "render/materials/materials.h"
+#include "render/trace/plants/forest.h"
 #include "render/trace/plants/plants_kept.h"
 #include "render/scene/hits.h"
 #include "terrain/woods/woods.h"
@@ -33,6 +34,10 @@ typedef struct Canopy Canopy;
  * their rows of plants, and their openness; not kept. */
 Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves);
 void   canopy_destroy(Canopy *canopy);
+/* From here on the plants of the forest's pages are part of the canopy where light is asked for (canopy_light): cells
+ * of a page, 64 kB, are made when a hit on one of its plants or nearer than far_m needs them, and kept. Of crowns that
+ * reach over a page's edge the part beyond is left out. canopy_stand knows none of them. forest must outlive it. */
+Status canopy_see_pages(Canopy *canopy, const Forest *forest, bool leaves);
 /* The same from the cache, or into it. */
 Status canopy_create_kept(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials,
                           bool leaves, const PlantsKept *kept);

@@ -368,7 +368,7 @@ Status far_woods_frame(FarWoodsFrame **out, const FarWoods *far, const Air *air,
 
 /* ---- hits ------------------------------------------------------------------------------------- */
 
-bool far_woods_find(FarPlaces *out, const FarWoods *far, const Hits *hits)
+bool far_woods_find(FarPlaces *out, const FarWoods *far, const ForestFrame *plants, const Hits *hits)
 {
     bool any = false;
     woods_not_standing(out->stand, out->cover, out->density, far->woods, hits->count, hits->surface, hits->p_enu[0],
@@ -377,6 +377,10 @@ bool far_woods_find(FarPlaces *out, const FarWoods *far, const Hits *hits)
         out->stand[i] = !out->stand[i] || hits->kind[i] != hit_ground ? 0
                         : out->stand[i] == SURFACE_FOREST_CONIFER     ? 2
                                                                       : 1;
+        out->planted[i] = 0;
+        if (out->stand[i] && plants && plants->far)
+            out->planted[i] = (float)forest_far_share(plants, hits->p_enu[0][i], hits->p_enu[1][i]);
+        if (!(out->planted[i] < 1)) out->stand[i] = 0;
         any |= out->stand[i] > 0;
     }
     return any;
@@ -450,6 +454,7 @@ void far_woods_apply(const FarInputs *in, const FarWoodsFrame *f, const Material
         double          to_eye = 0; /* cosine from the ground's normal */
         for (int c = 0; c < 3; c++) to_eye -= (double)hits->n_geo[c][i] * rays->d_enu[c][i];
         const float share =
+            (1 - in->places->planted[i]) *
             canopy_share(&dense, f->far, stand, (double)in->places->cover[i], (double)in->places->density[i], to_eye);
         look_there(&node, f, stand, dense, to_eye, hits, rays, i);
         for (int c = 0; c < optical_channel_count; c++) {

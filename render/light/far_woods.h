@@ -131,9 +131,11 @@ Status far_woods_frame(FarWoodsFrame **out, const FarWoods *far, const Air *air,
 typedef struct FarPlaces {
     uint8_t stand[hits_capacity];                         /* 0: not; else 1 + its index */
     float   cover[hits_capacity], density[hits_capacity]; /* woods_not_standing */
+    float   planted[hits_capacity];                       /* share of the plants there that stand in pages */
 } FarPlaces;
-/* Returns whether any does. */
-bool far_woods_find(FarPlaces *out, const FarWoods *far, const Hits *hits);
+/* Returns whether any does. plants: the frame's, whose pages stand for the canopy (forest_far_share);
+ * may be NULL. */
+bool far_woods_find(FarPlaces *out, const FarWoods *far, const ForestFrame *plants, const Hits *hits);
 /* How far above the ground the crowns are that the sun reaches. */
 double far_woods_top_m(const FarWoods *far, int stand);
 

@@ -67,7 +67,9 @@ Status frame_world_plant(World *world, const Woods *woods, const Config *config,
                                  .fine = true,
                                  .level1_px = config->terrain.woods_level1_px,
                                  .sway = config->terrain.woods_sway,
-                                 .tables = config->terrain.woods_tables};
+                                 .tables = config->terrain.woods_tables,
+                                 .far_m = config->terrain.woods_far_m,
+                                 .far_mb = config->terrain.woods_far_mb};
     if (!woods) return STATUS_OK;
     const double begun_s = wall_clock_s();
     const Status status = world_plant(world, woods, &forest, isa, pool);

@@ -314,6 +314,11 @@ enum { config_paths_size = 4096 };
         "ground") \
     ROW(INT, terrain., woods_trees, 300000, 0, woods_most_trees, "", \
         "most trees, bushes and hedges; beyond, those farthest from what is on the ground are left out") \
+    ROW(DOUBLE, terrain., woods_far_m, 25000, 0, 50000, "m", \
+        "distance from the sensor within which the plants stand that woods_trees leaves out, fewer from four fifths of " \
+        "it on; 0: none") \
+    ROW(DOUBLE, terrain., woods_far_mb, 600, 16, 100000, "MB", \
+        "memory of these plants; what no frame in work needs is given back beyond it") \
     ROW(DOUBLE, terrain., woods_half_m, 0, 0, 50000, "m", \
         "half width of a square about the aim in which plants stand; below 50: the extent of entities and " \
         "host about the middle of the exercise, in steps, and 4 km beyond") \

@@ -142,7 +142,7 @@ Status woods_of_class(Woods *out, SurfaceClass surface, double density, uint64_t
 
 /* ---- sources ---------------------------------------------------------------------------------- */
 
-static void free_source(WoodsSource *s)
+void woods_source_free(WoodsSource *s)
 {
     if (!s) return;
     woods_clearings_free(&s->clearings);
@@ -182,7 +182,7 @@ static Status sort_crowns(WoodsSource *s)
     return STATUS_OK;
 }
 
-static Status open_source(WoodsSource **out, const Landscape *landscape, const WoodsConfig *config)
+Status woods_source_open(WoodsSource **out, const Landscape *landscape, const WoodsConfig *config, double half_width_m)
 {
     char         path[512];
     WoodsSource *s = calloc(1, sizeof *s);
@@ -192,10 +192,10 @@ static Status open_source(WoodsSource **out, const Landscape *landscape, const W
     double end[2];
     for (int k = 0; k < 2; k++) {
         s->centre_m[k] = config->centre_m[k];
-        end[k] = ceil((config->centre_m[k] + config->half_width_m) / woods_square_m);
+        end[k] = ceil((config->centre_m[k] + half_width_m) / woods_square_m);
     }
-    s->i0 = (int64_t)floor((config->centre_m[0] - config->half_width_m) / woods_square_m);
-    s->j0 = (int64_t)floor((config->centre_m[1] - config->half_width_m) / woods_square_m);
+    s->i0 = (int64_t)floor((config->centre_m[0] - half_width_m) / woods_square_m);
+    s->j0 = (int64_t)floor((config->centre_m[1] - half_width_m) / woods_square_m);
     s->nx = (int)(end[0] - (double)s->i0), s->ny = (int)(end[1] - (double)s->j0);
     s->origin_enu[0] = (double)s->i0 * woods_square_m, s->origin_enu[1] = (double)s->j0 * woods_square_m;
     const double z_m = elevation_height(&landscape->elevation, config->centre_m[0], config->centre_m[1], NULL);
@@ -212,7 +212,7 @@ static Status open_source(WoodsSource **out, const Landscape *landscape, const W
     if (status == STATUS_OK) status = sort_crowns(s);
     if (status == STATUS_OK) status = woods_clearings_create(&s->clearings, s, config);
     if (status != STATUS_OK) {
-        free_source(s);
+        woods_source_free(s);
         return status;
     }
     *out = s;
@@ -261,7 +261,8 @@ static Status gather(Woods *out, const WoodsSource *s, const SquarePlants *squar
 static bool config_is_good(const WoodsConfig *c)
 {
     bool good = c->half_width_m >= 50 && c->half_width_m <= 50000 && c->most_trees >= 0 &&
-                c->most_trees <= woods_most_trees && c->path_count >= 0 && c->place_count >= 0;
+                c->most_trees <= woods_most_trees && c->path_count >= 0 && c->place_count >= 0 && c->far_half_m >= 0 &&
+                c->far_half_m <= 50000;
     for (int k = 0; k < 2; k++) good = good && fabs(c->centre_m[k]) < 1e6;
     for (int n = 0; good && n < c->place_count; n++)
         good = fabs(c->place[n].p_m[0]) < 1e7 && fabs(c->place[n].p_m[1]) < 1e7;
@@ -273,9 +274,9 @@ static bool config_is_good(const WoodsConfig *c)
     return good;
 }
 
-static CacheKey key_of(const WoodsConfig *c)
+CacheKey woods_key(const char *what, const WoodsConfig *c)
 {
-    CacheKey       key = cache_key("woods");
+    CacheKey       key = cache_key(what);
     const double   number[] = {c->centre_m[0], c->centre_m[1], c->half_width_m};
     const uint64_t whole[] = {c->seed, (uint64_t)c->most_trees, (uint64_t)c->path_count, (uint64_t)c->place_count};
     cache_key_add(&key, number, sizeof number);
@@ -310,7 +311,7 @@ static Status place(Woods *out, WoodsSource *source, const WoodsConfig *config, 
 static Status need(Woods *out, WoodsSource *source, const WoodsConfig *config, Pool *pool)
 {
     if (!config->cache || !config->follows) return place(out, source, config, pool);
-    CacheKey    key = key_of(config);
+    CacheKey    key = woods_key("woods", config);
     void       *octets;
     size_t      count;
     const Woods empty = *out;
@@ -337,12 +338,13 @@ Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *c
     WoodsSource *source = NULL;
     Woods        woods = {.landscape = landscape};
     if (!config_is_good(config)) return STATUS_BAD_VALUE;
-    Status status = open_source(&source, landscape, config);
+    Status status = woods_source_open(&source, landscape, config, config->half_width_m);
     if (status != STATUS_OK) return status;
     memcpy(woods.origin_enu, source->origin_enu, sizeof woods.origin_enu);
     woods.nx = source->nx, woods.ny = source->ny;
     status = need(&woods, source, config, pool);
     woods.low = source;
+    if (status == STATUS_OK) status = woods_pages_open(&woods, config);
     if (status != STATUS_OK) {
         woods_destroy(&woods);
         return status;
@@ -354,7 +356,8 @@ Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *c
 void woods_destroy(Woods *woods)
 {
     free(woods->first), free(woods->plant), free(woods->bare);
-    free_source(woods->low);
+    woods_source_free(woods->low);
+    woods_pages_close(woods);
     memset(woods, 0, sizeof *woods);
 }
 

@@ -32,9 +32,11 @@ typedef struct WoodsConfig {
     const WoodsPlace *place; /* none in the square: its centre */
     const char *store; /* path of the terrain store of the landscape, for its canopy layers and crowns; NULL: none */
     int         path_count;
-    const WoodsPath *path;    /* paths that are cleared of plants */
-    Cache           *cache;   /* where the standing plants are kept; NULL: nowhere */
-    const char      *follows; /* what the landscape and the tables follow from, as a text; NULL: not known: not kept */
+    const WoodsPath *path;       /* paths that are cleared of plants */
+    double           far_half_m; /* half width of the square about the centre of which woods_page tells more plants;
+                                  * not above half_width_m: none; at most 50000 */
+    Cache      *cache;           /* where the standing plants and pages are kept; NULL: nowhere */
+    const char *follows; /* what the landscape and the tables follow from, as a text; NULL: not known: not kept */
 } WoodsConfig;
 
 enum { woods_most_trees = 4000000 };
@@ -56,6 +58,9 @@ typedef struct Woods {
     int              from_crowns, from_canopy, from_classes, from_hedges; /* how many plants came from each source */
     const Landscape *landscape;                                           /* borrowed */
     void            *low;                                                 /* private: what woods_low_plants needs */
+    int              pages_x, pages_y;                                    /* pages of woods_page; 0: there are none */
+    double           pages_enu[2];                                        /* south-west corner of the first one */
+    void            *far;                                                 /* private: what woods_page needs */
 } Woods;
 
 /* pool may be NULL. STATUS_BAD_VALUE: a value outside its range, logged. */
@@ -68,6 +73,37 @@ void   woods_destroy(Woods *woods);
 static const double woods_low_m = 8;
 enum { woods_low_most = 4096 };
 int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i, int64_t j);
+
+/* ---- pages: plants that are not in Woods.plant ----------------------------------------------------
+ *
+ * Squares of woods_page_m, page j * pages_x + i with its south-west corner at pages_enu + woods_page_m (i, j), which
+ * list the plants of all squares that Woods.plant leaves out: those that are bare, and those beyond its nx and ny. A
+ * page is a pure function of what the woods are, and is placed, or read from the cache, when it is asked for. Plant k
+ * of page p has the number woods_page_number(p) + k, which no other plant of the woods has. */
+
+enum { woods_page_squares = 16 /* a side */, woods_page_most = 1 << 17, woods_most_pages_side = 99 };
+static const double woods_page_m = 1024, woods_page_tall_m = 45;
+
+typedef struct WoodsPage {
+    double origin_enu[3]; /* of plant positions: the page's south-west corner, at about the height of its ground */
+    int    count;
+    Plant *plant; /* [count]; neighbours in the list are near each other on the ground */
+} WoodsPage;
+
+/* Thread-safe. Plants whose tops are above high_m (of woods_page_span) are left out. */
+Status woods_page(WoodsPage *out, const Woods *woods, int page);
+void   woods_page_free(WoodsPage *page);
+/* Heights between which the page's plants are, ENU. False: it has no ground. */
+bool woods_page_span(double *low_m, double *high_m, const Woods *woods, int page);
+/* The page that a place is on; -1: none. */
+int                    woods_page_at(const Woods *woods, double x_m, double y_m);
+static inline uint32_t woods_page_number(int page)
+{
+    _Static_assert(woods_most_trees <= 32 * woods_page_most, "the numbers of Woods.plant come first");
+    return ((uint32_t)page + 32) * (uint32_t)woods_page_most;
+}
+/* The page of a number; negative: it is not of a page. */
+static inline int woods_page_of(uint32_t number) { return (int)(number / (uint32_t)woods_page_most) - 32; }
 
 /* Whether it is in a square whose trees stand. */
 bool woods_is_planted(const Woods *woods, double x_m, double y_m);

@@ -39,7 +39,7 @@ static bool are_listed(const Woods *w)
     return true;
 }
 
-static bool is_plant(const Plant *p)
+bool woods_is_plant(const Plant *p)
 {
     return p->kind < PLANT_STANDING && p->height > 0 && isfinite(p->p_m[0]) && isfinite(p->p_m[1]) &&
            isfinite(p->p_m[2]);
@@ -69,7 +69,7 @@ Status woods_from_octets(Woods *out, const void *octets, size_t count)
     if (out->bare) memcpy(out->bare, at + sizeof head + first + plant, squares);
     if (!are_listed(out)) return STATUS_BAD_VALUE;
     for (int k = 0; k < out->count; k++) {
-        if (!is_plant(&out->plant[k])) return STATUS_BAD_VALUE;
+        if (!woods_is_plant(&out->plant[k])) return STATUS_BAD_VALUE;
         out->by_kind[out->plant[k].kind]++;
     }
     return STATUS_OK;

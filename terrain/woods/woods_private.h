@@ -85,6 +85,18 @@ bool woods_canopy_at(double *cover, double *height_m, const WoodsSource *s, doub
 /* Empties the squares farthest from the places until at most config->most_trees are left. */
 Status woods_keep_nearest(Woods *out, const WoodsSource *s, SquarePlants *square, const WoodsConfig *config);
 
+/* woods.c */
+Status woods_source_open(WoodsSource **out, const Landscape *landscape, const WoodsConfig *config, double half_width_m);
+void   woods_source_free(WoodsSource *s); /* accepts NULL */
+/* A key of everything that the standing plants follow from. */
+CacheKey woods_key(const char *what, const WoodsConfig *config);
+
+/* woods_page.c: opens what woods_page needs, or nothing where there are no pages. */
+Status woods_pages_open(Woods *out, const WoodsConfig *config);
+void   woods_pages_close(Woods *woods);
+
+/* woods_kept.c: whether a plant from a file can stand. */
+bool woods_is_plant(const Plant *p);
 /* woods_kept.c: their length, and the octets where out is not NULL. */
 size_t woods_to_octets(void *out, const Woods *woods);
 /* Into woods that are empty but for nx and ny. STATUS_BAD_VALUE: not such octets; woods_destroy follows, as after

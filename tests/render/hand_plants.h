@@ -129,7 +129,7 @@ static inline void hand_grow(bool whole, double size)
 }
 
 /* count plants at random over a square of half_m, about origin. */
-static Woods hand_stand(Plant *plant, int count, const double origin_enu[3], double half_m)
+static inline Woods hand_stand(Plant *plant, int count, const double origin_enu[3], double half_m)
 {
     static uint32_t first[2];
     first[1] = (uint32_t)count;

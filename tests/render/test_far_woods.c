@@ -282,12 +282,12 @@ static void places(void **state)
         hits.surface[i] = i == 3 ? SURFACE_NONE : SURFACE_FOREST_BROADLEAF;
         hits.p_enu[0][i] = x_m[i], hits.p_enu[1][i] = 10;
     }
-    CHECK(far_woods_find(&found, place.planted.far_woods, &hits)); /* beyond the square */
+    CHECK(far_woods_find(&found, place.planted.far_woods, NULL, &hits)); /* beyond the square */
     CHECK(!found.stand[0] && !found.stand[1] && found.stand[2] == 1 && !found.stand[3]);
-    CHECK(far_woods_find(&found, &place.far, &hits));
+    CHECK(far_woods_find(&found, &place.far, NULL, &hits));
     CHECK(found.stand[0] == 1 && found.stand[1] == 1 && found.stand[2] == 1 && !found.stand[3]);
     hits.surface[0] = SURFACE_ROAD, hits.surface[1] = SURFACE_CROP, hits.surface[2] = SURFACE_GRASS;
-    CHECK(!far_woods_find(&found, &place.far, &hits));
+    CHECK(!far_woods_find(&found, &place.far, NULL, &hits));
     close_place();
 }
 

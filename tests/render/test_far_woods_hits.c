@@ -186,11 +186,11 @@ static void only_ground_is_found(void **state)
         hits.kind[i] = kind[i], hits.surface[i] = surface[i], hits.range_m[i] = 10;
         hits.p_enu[0][i] = 5000 + i, hits.p_enu[1][i] = 5000; /* beyond what is planted */
     }
-    CHECK(far_woods_find(&found, &of_land, &hits));
+    CHECK(far_woods_find(&found, &of_land, NULL, &hits));
     CHECK(found.stand[0] == 1 && found.stand[1] == 2 && !found.stand[2] && !found.stand[3] && !found.stand[4] &&
           !found.stand[5]);
     hits.kind[0] = hits.kind[1] = hit_part;
-    CHECK(!far_woods_find(&found, &of_land, &hits) && !found.stand[0]);
+    CHECK(!far_woods_find(&found, &of_land, NULL, &hits) && !found.stand[0]);
     woods_destroy(&woods);
     landscape_destroy(&land);
 }

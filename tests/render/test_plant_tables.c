@@ -347,7 +347,7 @@ static void transmittance(void **state)
 static void own_shade(void **state)
 {
     static Plant    plant[120];
-    static uint32_t place[rays], quad[rays];
+    static uint32_t leaves[rays], quad[rays];
     static uint8_t  real[rays];
     const double    eye[3] = {0, -700, 250}, low[3] = {-40, -40, 2}, high[3] = {40, 40, 14};
     (void)state;
@@ -366,17 +366,17 @@ static void own_shade(void **state)
             const double  d[3] = {by_table.d[0][i], by_table.d[1][i], by_table.d[2][i]};
             if (hit) forest_surface(&at, &by_table.frame, &by_table.hit[i], eye, d, by_table.range_m[i], 0.1f);
             const double off_m = v3_dot(at.n_geo, way) > 0 ? 1e-3 : -1e-3;
-            place[i] = hit ? by_table.hit[i].plant : UINT32_MAX, quad[i] = hit ? by_table.hit[i].quad : UINT32_MAX;
+            leaves[i] = hit ? by_table.hit[i].plant : UINT32_MAX, quad[i] = hit ? by_table.hit[i].quad : UINT32_MAX;
             for (int c = 0; c < 3; c++) {
                 by_table.o[c][i] = eye[c] + (hit ? by_table.range_m[i] : 1e4) * d[c] + off_m * at.n_geo[c];
                 by_table.d[c][i] = way[c];
             }
         }
         for (int k = 0; k < 2; k++) {
-            any_hits(&by_table, &(ForestLeft){.real = k ? real : NULL, .place = place, .quad = quad});
-            for (int i = 0; i < rays; i++) dark[k] += by_table.dark[i] && place[i] != UINT32_MAX;
+            any_hits(&by_table, &(ForestLeft){.real = k ? real : NULL, .plant = leaves, .quad = quad});
+            for (int i = 0; i < rays; i++) dark[k] += by_table.dark[i] && leaves[i] != UINT32_MAX;
         }
-        for (int i = 0; i < rays; i++) met += place[i] != UINT32_MAX;
+        for (int i = 0; i < rays; i++) met += leaves[i] != UINT32_MAX;
         printf("sun %.0f: %.3f dark by tables, %.3f\n", up / rad_per_deg, dark[0] / (double)met, dark[1] / (double)met);
         CHECK(met > 1000 && dark[1] > met / 20);
         CHECK_NEAR(dark[0] / (double)met, dark[1] / (double)met, 0.03);

@@ -180,6 +180,7 @@ static void off_is_off_and_few_are_few(void **state)
     int trees = 0;
     for (int k = 0; k < PLANT_TREES; k++) trees += woods.woods.by_kind[k];
     CHECK(trees <= 50 && woods.woods.count <= 50 && woods.woods.left_out > 0);
+    CHECK(woods.config.far_half_m == 0 && woods.woods.pages_x == 0);
     CHECK(says(&choices, "more are left out") && says(&choices, "(terrain.woods_trees)"));
     CHECK(says(&choices, "deciduous trees are bare (terrain.woods_leaves)"));
     choice_woods_free(&woods);
@@ -213,6 +214,7 @@ static void the_square_holds_the_exercise(void **state)
     CHECK_NEAR(woods.config.centre_m[0], p[0], 0.1);
     CHECK_NEAR(woods.config.centre_m[1], p[1], 0.1);
     CHECK_NEAR(woods.config.half_width_m, 4000 + 1000 * sqrt(2), 1);
+    CHECK(woods.config.far_half_m == 50000);       /* pages, but where the aim has a square of its own */
     assert_int_equal(woods.config.place_count, 3); /* what trees are kept about */
     for (int t = 0; t < 3; t++) {
         double away_m = INFINITY;

@@ -8,7 +8,7 @@
 
 /* ---- errors ----------------------------------------------------------------------------------- */
 
-static void latch_error(void *user, enum RTCError code, const char *text)
+void forest_latch_error(void *user, enum RTCError code, const char *text)
 {
     Forest *forest = user;
     int     none = RTC_ERROR_NONE;
@@ -16,7 +16,7 @@ static void latch_error(void *user, enum RTCError code, const char *text)
         log_warn("forest: Embree: %s", text ? text : "?");
 }
 
-static Status forest_status(const Forest *forest)
+Status forest_status(const Forest *forest)
 {
     const int code = __atomic_load_n(&forest->error, __ATOMIC_SEQ_CST);
     return code == RTC_ERROR_NONE ? STATUS_OK : code == RTC_ERROR_OUT_OF_MEMORY ? STATUS_NO_MEMORY : STATUS_UNSUPPORTED;
@@ -88,7 +88,7 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
 /* Box and reach over the levels of a kind that are traced. */
 static void unite_levels(ShapeScene *hull, const ShapeScene level[plant_levels])
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, square = 0;
     for (int a = 0; a <= shape_azimuths; a++) hull->reach[a] = -INFINITY;
     for (int l = 0; l < plant_levels; l++) {
         if (!level[l].scene) continue;
@@ -103,6 +103,11 @@ static void unite_levels(ShapeScene *hull, const ShapeScene level[plant_levels])
         hull->centre[c] = 0.5 * (low[c] + high[c]), hull->half[c] = 0.5 * (high[c] - low[c]);
         hull->most = fmax(hull->most, fmax(-low[c], high[c]));
     }
+    for (int c = 0; c < 3 && hull->azimuth; c++) {
+        const double most = fabs(hull->centre[c] - (c == 2 ? 0.5 : 0)) + hull->half[c];
+        square += most * most;
+    }
+    hull->radius = sqrt(square);
 }
 
 /* ---- lists ------------------------------------------------------------------------------------ */
@@ -110,16 +115,18 @@ static void unite_levels(ShapeScene *hull, const ShapeScene level[plant_levels])
 Status plant_list_commit(PlantList *list, const Forest *forest, bool quick)
 {
     if (list->count == 0) return STATUS_OK;
-    if (!list->frame && forest->config.tables && !(list->bounds = malloc((size_t)list->count * sizeof *list->bounds)))
+    if (!list->frame && !list->far && forest->config.tables &&
+        !(list->bounds = malloc((size_t)list->count * sizeof *list->bounds)))
         return STATUS_NO_MEMORY;
-    RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_USER);
+    const RTCDevice device = list->far ? forest->page_device : forest->device;
+    RTCGeometry     geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     if (!geometry) return STATUS_NO_MEMORY;
-    list->scene = rtcNewScene(forest->device);
+    list->scene = rtcNewScene(device);
     if (!list->scene) {
         rtcReleaseGeometry(geometry);
         return STATUS_NO_MEMORY;
     }
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)list->count);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)((list->count + list->per_box - 1) / list->per_box));
     rtcSetGeometryUserData(geometry, list);
     rtcSetGeometryBoundsFunction(geometry, plant_box, list);
     rtcSetGeometryIntersectFunction(geometry, plant_intersect);
@@ -161,7 +168,7 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
         free(forest);
         return STATUS_UNSUPPORTED;
     }
-    rtcSetDeviceErrorFunction(forest->device, latch_error, forest);
+    rtcSetDeviceErrorFunction(forest->device, forest_latch_error, forest);
     for (int a = 0; a <= shape_azimuths; a++) {
         forest->azimuth[a][0] = cos(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);
         forest->azimuth[a][1] = sin(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);
@@ -174,9 +181,10 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
         const ShapeScene *finest = &forest->shape[kind][forest_finest(forest)];
         if (finest->scene) status = plant_table_create(&forest->table[kind], finest);
     }
-    forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count};
+    forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count, .per_box = 1};
     memcpy(forest->standing.origin_enu, woods->origin_enu, sizeof woods->origin_enu);
     if (status == STATUS_OK) status = plant_list_commit(&forest->standing, forest, false);
+    if (status == STATUS_OK) status = forest_pages_create(forest, isa);
     if (status != STATUS_OK) {
         forest_destroy(forest);
         return status;
@@ -191,8 +199,8 @@ Status forest_create_beside(Forest **out, const Forest *of, const Woods *woods)
     if (!forest) return STATUS_NO_MEMORY;
     *forest = *of;
     rtcRetainDevice(forest->device); /* errors of either are latched by `of` */
-    forest->borrows = true, forest->woods = woods, forest->error = RTC_ERROR_NONE;
-    forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count};
+    forest->borrows = true, forest->woods = woods, forest->error = RTC_ERROR_NONE, forest->pages = NULL;
+    forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count, .per_box = 1};
     memcpy(forest->standing.origin_enu, woods->origin_enu, sizeof woods->origin_enu);
     forest->squares = low_squares_create();
     Status status = forest->squares ? plant_list_commit(&forest->standing, forest, true) : STATUS_NO_MEMORY;
@@ -206,6 +214,7 @@ void forest_destroy(Forest *forest)
 {
     if (!forest) return;
     plant_list_close(&forest->standing);
+    forest_pages_destroy(forest);
     for (int kind = 0; kind < PLANT_STANDING && !forest->borrows; kind++) plant_table_destroy(forest->table[kind]);
     for (int kind = 0; kind < PLANT_KINDS && !forest->borrows; kind++)
         for (int level = 0; level < plant_levels; level++)
@@ -232,10 +241,18 @@ Status forest_frame_open(ForestFrame *out, const Forest *forest, const double ey
     *out = (ForestFrame){.forest = forest, .per_rad = per_rad, .ray_px = 1, .low_reach_m = low_reach_m, .t_s = t_s};
     memcpy(out->eye_enu, eye_enu, sizeof out->eye_enu);
     memcpy(out->wind_mps, wind_mps, sizeof out->wind_mps);
-    return low_reach_m > 0 ? low_plants_open(out, low_reach_m, pool, arena) : STATUS_OK;
+    const Status status = far_pages_open(out, pool);
+    if (status != STATUS_OK || !(low_reach_m > 0)) return status;
+    const Status low = low_plants_open(out, low_reach_m, pool, arena);
+    if (low != STATUS_OK) far_pages_close(out);
+    return low;
 }
 
-void forest_frame_close(ForestFrame *frame) { low_plants_close(frame); }
+void forest_frame_close(ForestFrame *frame)
+{
+    low_plants_close(frame);
+    far_pages_close(frame);
+}
 
 /* The whole crown leans with the wind's pressure, which grows with its square, and swings about that at its natural
  * frequency: 0.3 Hz at 15 m, in inverse proportion to the height (Moore & Maguire, Trees 18, 195, 2004: 0.1 to 0.5 Hz

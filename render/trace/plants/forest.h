@@ -3,7 +3,14 @@
  * One committed scene for each prototype and level, and one scene of boxes over all standing plants (user geometry):
  * a ray that meets a plant's box is turned into the prototype's axes in double, converted to float once, and traced in
  * that scene; hit, range and normal are computed in double. Equal distances go to the plant of the lower index, and to
- * its lower quad. Low plants stand in squares about the eye, made on demand. */
+ * its lower quad. Low plants stand in squares about the eye, made on demand.
+ *
+ * Pages. The plants that Woods.plant leaves out stand in pages (woods_page), within far_m of the frame's eye, as seen
+ * on the map: of all of them where nearer than forest_far_full far_m, and from there on each to a distance of its own,
+ * drawn by its number, so that their share falls evenly to none at far_m. A page is placed, and its tree of boxes
+ * built, when the first ray enters its box; other rays wait for it. Since what stands follows from the eye and far_m,
+ * and a page from the woods, no order, thread or memory changes what rays meet. Pages that no open frame has used are
+ * freed, the least recently used first, while all take more than far_mb. */
 #ifndef RENDER_TRACE_PLANTS_FOREST_H
 #define RENDER_TRACE_PLANTS_FOREST_H
 
@@ -24,6 +31,8 @@ typedef struct ForestConfig {
     double sway;      /* 0: plants stand still; 1: they sway by the wind of the frame */
     bool   tables;    /* rays from the frame's eye and to the sun meet standing plants that are lower in the picture
                        * than forest_table_px in tables (forest_table.c) */
+    double far_m;     /* plants of pages (woods_page) stand within this of the eye; 0: none */
+    double far_mb;    /* memory of pages that frames do not need any more is given back beyond this */
 } ForestConfig;
 
 /* Likewise from which it is traced at plant_fine. */
@@ -59,6 +68,7 @@ typedef struct ForestFrame {
     double        wind_mps[2]; /* east, north: towards which it blows */
     double bend_per_m; /* first hits are of rays from the eye that bend (terrain/earth/refraction.h); 0: straight */
     void  *low;        /* private: squares of low plants, of the arena */
+    void  *far;        /* private: pages in reach */
 } ForestFrame;
 
 /* Low plants of the squares about the eye are made here, by pool (NULL: one thread). forest_frame_close before the
@@ -67,10 +77,24 @@ Status forest_frame_open(ForestFrame *out, const Forest *forest, const double ey
                          double low_reach_m, double t_s, const double wind_mps[2], Pool *pool, Arena *arena);
 void   forest_frame_close(ForestFrame *frame);
 
+/* Share of the plants of pages that stand at a place, 0 .. 1; of a place that no page has plants of: 0. */
+double forest_far_share(const ForestFrame *frame, double x_m, double y_m);
+/* The plants of a page, which stay while a frame is open that was opened before the call; they are made where they are
+ * not there. STATUS_NO_MEMORY, logged: none. Thread-safe. */
+Status forest_page_plants(const WoodsPage **out, const Forest *forest, int page);
+/* Memory of all pages, octets, and how many were made. */
+typedef struct ForestPagesUse {
+    size_t   octets;
+    uint64_t made, freed;
+} ForestPagesUse;
+ForestPagesUse      forest_pages_use(const Forest *forest);
+static const double forest_far_full = 0.8;
+
 enum { forest_low_bit = 1u << 31 };
 
 typedef struct ForestHit {
-    uint32_t plant;              /* index in Woods.plant; with forest_low_bit: a low plant, by a number of its own */
+    uint32_t plant;              /* index in Woods.plant, or woods_page_number; with forest_low_bit: a low plant, by a
+                                  * number of its own. No two plants of a frame have the same */
     uint32_t place;              /* in its list */
     uint32_t quad;               /* of its shape */
     uint8_t  kind, level, organ; /* PlantKind, plant_fine .., PlantOrgan */
@@ -88,7 +112,7 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
 /* What rays leave, [count] each. */
 typedef struct ForestLeft {
     const uint8_t  *real;         /* as above */
-    const uint32_t *place, *quad; /* of hits on plants, ForestHit's; UINT32_MAX: none. NULL: no ray leaves a plant */
+    const uint32_t *plant, *quad; /* of hits on plants, ForestHit's; UINT32_MAX: none. NULL: no ray leaves a plant */
 } ForestLeft;
 /* dark becomes 1 where some plant is met nearer than far_m; rays where it is 1 already are left out. Tables are for
  * rays of the direction of the first. left: NULL: none leaves a plant, and none is real. */

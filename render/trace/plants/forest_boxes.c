@@ -1,4 +1,4 @@
-/* render/trace/plants/forest_boxes.c: the box about a standing plant, for Embree's tree over all of them. */
+/* render/trace/plants/forest_boxes.c: the box about a plant, or some neighbours, for Embree's tree over all of them. */
 #include "render/trace/plants/forest_private.h"
 
 double plant_rough_angle(double x, double y)
@@ -59,7 +59,8 @@ static void bounds_by(double low_m[3], double high_m[3], const PlantList *list, 
     }
 }
 
-double plant_bounds_unit_m(const PlantList *list, const Plant *plant)
+/* Unit of PlantList.bounds of a plant. */
+static double bounds_unit_m(const PlantList *list, const Plant *plant)
 {
     static const double per = 1.0 / 120;
     const double        height_m = plant_height_m(plant), wide = plant->width > 128 ? plant->width / 128.0 : 1;
@@ -69,7 +70,7 @@ double plant_bounds_unit_m(const PlantList *list, const Plant *plant)
 /* The box in whole units, outwards, which are kept. Lean adds less to a coordinate than the units have room for. */
 static void keep_bounds(double low_m[3], double high_m[3], const PlantList *list, uint32_t place)
 {
-    const double unit_m = plant_bounds_unit_m(list, &list->plant[place]);
+    const double unit_m = bounds_unit_m(list, &list->plant[place]);
     int8_t      *kept = list->bounds[place];
     for (int c = 0; c < 3; c++) {
         kept[c] = (int8_t)clamp(floor(low_m[c] / unit_m), -127, 127);
@@ -79,19 +80,43 @@ static void keep_bounds(double low_m[3], double high_m[3], const PlantList *list
     }
 }
 
-/* Tight boxes cost as much as a ray each: worth it for those that stand for many frames. */
-void plant_box(const struct RTCBoundsFunctionArguments *a)
+void plant_bounds(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant)
+{
+    const double unit_m = bounds_unit_m(list, plant), swing_m = plant_swing_m(list, plant);
+    if (!list->bounds) bounds_by(low_m, high_m, list, plant, box_along);
+    for (int c = 0; c < 3; c++) {
+        const int8_t *kept = list->bounds ? list->bounds[plant - list->plant] : NULL;
+        low_m[c] = (kept ? kept[c] * unit_m : low_m[c]) - swing_m;
+        high_m[c] = (kept ? kept[3 + c] * unit_m : high_m[c]) + swing_m;
+    }
+}
+
+/* Tight boxes cost as much as a ray each: worth it for those that stand from the start. */
+static void box_of(float low[3], float high[3], const PlantList *list, uint32_t place)
 {
     static const double room_m = 0.02; /* of a float 16 km from the origin, twenty times */
-    const PlantList    *list = a->geometryUserPtr;
-    const Plant        *plant = &list->plant[a->primID];
+    const Plant        *plant = &list->plant[place];
     const double        swing_m = plant_swing_m(list, plant);
-    float              *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
-    double              low[3], high[3];
-    bounds_by(low, high, list, plant, list->frame ? box_along : reach_along);
-    if (list->bounds) keep_bounds(low, high, list, a->primID);
+    double              low_m[3], high_m[3];
+    bounds_by(low_m, high_m, list, plant, list->frame || list->far ? box_along : reach_along);
+    if (list->bounds) keep_bounds(low_m, high_m, list, place);
     for (int c = 0; c < 3; c++) {
-        bound[0][c] = (float)((double)plant->p_m[c] + low[c] - room_m - swing_m);
-        bound[1][c] = (float)((double)plant->p_m[c] + high[c] + room_m + swing_m);
+        low[c] = (float)((double)plant->p_m[c] + low_m[c] - room_m - swing_m);
+        high[c] = (float)((double)plant->p_m[c] + high_m[c] + room_m + swing_m);
+    }
+}
+
+void plant_box(const struct RTCBoundsFunctionArguments *a)
+{
+    const PlantList *list = a->geometryUserPtr;
+    const uint32_t   first = a->primID * (uint32_t)list->per_box, end = first + (uint32_t)list->per_box;
+    float           *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
+    for (uint32_t k = first; k < end && k < (uint32_t)list->count; k++) {
+        float low[3], high[3];
+        box_of(low, high, list, k);
+        for (int c = 0; c < 3; c++) {
+            if (k == first || low[c] < bound[0][c]) bound[0][c] = low[c];
+            if (k == first || high[c] > bound[1][c]) bound[1][c] = high[c];
+        }
     }
 }

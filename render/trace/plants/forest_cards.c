@@ -22,7 +22,6 @@ static int level_of(double step_m, double ray_m)
 void card_make(Card *card, const CardRays *rays, const PlantList *list, const Plant *plant)
 {
     const ForestFrame *frame = rays->frame;
-    const uint32_t     place = (uint32_t)(plant - list->plant);
     PlantTable        *table = plant->kind < PLANT_STANDING ? list->forest->table[plant->kind] : NULL;
     double             axis[3][3], scale[2], from[3], to[3], d[3], m[3][3];
     card->table = table;
@@ -31,7 +30,7 @@ void card_make(Card *card, const CardRays *rays, const PlantList *list, const Pl
     card->real = !table || height_m * frame->per_rad >= least_real_px(plant) * away_m;
     if (card->real) return;
     from[2] -= rays->bend_per_m * (from[0] * from[0] + from[1] * from[1]); /* all over the plant the same */
-    plant_axes_in(axis, scale, frame, plant);
+    plant_axes_in(axis, scale, frame, list, plant);
     for (int k = 0; k < 3; k++) {
         const double per = 1 / scale[k == 2];
         for (int c = 0; c < 3; c++) m[k][c] = axis[k][c] * per;
@@ -60,12 +59,12 @@ void card_make(Card *card, const CardRays *rays, const PlantList *list, const Pl
     }
     double at[3] = {-middle[0], half - half * middle[1], half - half * middle[2]};
     if (!rays->way_enu) at[0] += v3_dot(n, from), at[1] += v3_dot(u, from), at[2] += v3_dot(v, from);
-    const double  unit_m = plant_bounds_unit_m(list, plant), swing_m = plant_swing_m(list, plant);
-    const int8_t *box = list->bounds[place];
+    double low_m[3], high_m[3];
+    plant_bounds(low_m, high_m, list, plant);
     for (int c = 0; c < 3; c++) {
         card->at[c] = (float)at[c];
         card->from[c] = rays->way_enu ? plant->p_m[c] : (float)from[c];
-        card->low[c] = (float)(box[c] * unit_m - swing_m), card->high[c] = (float)(box[3 + c] * unit_m + swing_m);
+        card->low[c] = (float)low_m[c], card->high[c] = (float)high_m[c];
     }
 }
 
@@ -92,7 +91,7 @@ static I32x8 look_up(const Card *card, I32x8 at, F32x8 lanes)
 }
 
 unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const Card *card, const CardRays *rays,
-                    uint32_t place, unsigned lanes)
+                    uint32_t plant, unsigned lanes)
 {
     const F32x8 zero = f32x8_set(0), side = f32x8_set(table_side >> card->level);
     F32x8       o[3], d[3],
@@ -119,7 +118,7 @@ unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const 
     const I32x8 of = i32x8_sub(i32x8_and(texel, i32x8_set(table_quad_mask)), i32x8_set(2));
     F32x8       least = zero;
     if (rays->way_enu) { /* of its own plant, what lies clearly nearer to the sun, but for the quad that it leaves */
-        const F32x8 own = i32x8_equal(i32x8_load(rays->own_place), i32x8_set((int)place));
+        const F32x8 own = i32x8_equal(i32x8_load(rays->own_plant), i32x8_set((int)plant));
         least = f32x8_and(own, f32x8_set(0.05 * (double)card->step_m));
         in = f32x8_and_not(in, f32x8_and(own, i32x8_equal(i32x8_load(rays->own_quad), of)));
     }
@@ -132,4 +131,21 @@ unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const 
     f32x8_store(range_m, range);
     i32x8_store((int32_t *)quad, of);
     return f32x8_bits(in);
+}
+
+unsigned card_near(const CardRays *rays, const float at_m[3], double reach_m, unsigned lanes)
+{
+    F32x8 d[3], to[3], apart = f32x8_set(0);
+    for (int c = 0; c < 3; c++) {
+        d[c] = f32x8_load(rays->d[c]);
+        to[c] = f32x8_set((double)at_m[c]) - f32x8_load(rays->o[c]);
+    }
+    to[2] += f32x8_set(rays->bend_per_m) * f32x8_fma(to[0], to[0], to[1] * to[1]); /* in place of the ray's fall */
+    const F32x8 square = f32x8_fma(d[2], d[2], f32x8_fma(d[1], d[1], d[0] * d[0]));
+    const F32x8 nearest_m = f32x8_fma(d[2], to[2], f32x8_fma(d[1], to[1], d[0] * to[0])) / square;
+    for (int c = 0; c < 3; c++) {
+        const F32x8 off = to[c] - nearest_m * d[c];
+        apart = f32x8_fma(off, off, apart);
+    }
+    return f32x8_bits(f32x8_and(f32x8_mask(lanes), f32x8_at_most(apart, f32x8_set(reach_m * reach_m))));
 }

@@ -1,139 +1,6 @@
-/* render/trace/plants/forest_packets.c: rays through lists of plants, eight at a time: each plant whose box some of
- * them enter is met by its table, or itself. */
-#include "render/trace/plants/forest_private.h"
-
-enum { cards_kept = 1024 };
-
-/* What rays of a block have of the plants that they meet. */
-typedef struct Memory {
-    const Plant *of[cards_kept]; /* NULL: none yet */
-    Card         card[cards_kept];
-    PlantFrame   frame[frames_kept];
-} Memory;
-
-typedef struct Packet {
-    struct RTCIntersectContext base; /* first: Embree passes it to the callbacks */
-    CardRays                   rays;
-    Memory                    *kept;
-    int                        count;
-    unsigned                   by_table; /* lanes that need no plant itself */
-    unsigned                   table_hit;
-    uint64_t                   entered; /* plants' boxes */
-    ListRay                    ray[card_lanes];
-} Packet;
-
-/* ---- a plant ---------------------------------------------------------------------------------- */
-
-/* Fields of n rays lie one after another (rtcore_ray.h), and they may stand in any order. */
-typedef struct Fields {
-    const int      *valid;
-    unsigned        n;
-    float          *end_m;
-    const uint32_t *id;
-} Fields;
-
-static Fields fields_of(const int *valid, unsigned n, void *rays)
-{
-    return (Fields){valid, n, (float *)rays + 8 * n, (const uint32_t *)rays + 10 * n};
-}
-
-static unsigned lanes_of(const Fields *f)
-{
-    unsigned lanes = 0;
-    for (unsigned k = 0; k < f->n; k++)
-        if (f->valid[k]) lanes |= 1u << f->id[k];
-    return lanes;
-}
-
-/* NULL: no lane needs it. */
-static const Card *card_of(Packet *p, const PlantList *list, uint32_t place, unsigned lanes)
-{
-    const Plant *plant = &list->plant[place];
-    const size_t slot = (uintptr_t)plant / sizeof *plant % cards_kept;
-    Card        *card = &p->kept->card[slot];
-    if (!(p->by_table & lanes)) return NULL;
-    if (p->kept->of[slot] != plant) card_make(card, &p->rays, list, plant);
-    p->kept->of[slot] = plant;
-    return card->real ? NULL : card;
-}
-
-/* Rays of a packet that enter a plant's box. */
-typedef struct Visit {
-    Fields      of;
-    const Card *card;          /* NULL: by table nothing is met */
-    unsigned    tables, plant; /* lanes that meet it by table, and itself */
-} Visit;
-
-static Visit visit_of(Packet *p, const PlantList *list, uint32_t place, Fields of)
-{
-    const unsigned lanes = lanes_of(&of);
-    const Card    *card = card_of(p, list, place, lanes);
-    const unsigned tables = card ? lanes & p->by_table : 0;
-    p->entered += (uint64_t)__builtin_popcount(lanes);
-    return (Visit){of, card, tables, lanes & ~tables};
-}
-
-/* Lanes whose first hit is the table's. */
-static unsigned first_by_table(Packet *p, const Card *card, uint32_t place, unsigned lanes)
-{
-    float    range_m[card_lanes];
-    uint32_t quad[card_lanes];
-    unsigned nearer = 0;
-    for (unsigned met = card_meets(range_m, quad, card, &p->rays, place, lanes); met; met &= met - 1) {
-        const int    l = __builtin_ctz(met);
-        ListRay     *ray = &p->ray[l];
-        const double at_m = (double)range_m[l];
-        if (!(at_m <= ray->limit_m) || (at_m == ray->limit_m && !(ray->met && place < ray->hit.place))) continue;
-        ray->limit_m = at_m, ray->met = true;
-        ray->hit.place = place, ray->hit.quad = quad[l];
-        nearer |= 1u << l;
-    }
-    p->table_hit |= nearer;
-    return nearer;
-}
-
-void plant_intersect(const struct RTCIntersectFunctionNArguments *a)
-{
-    const PlantList *list = a->geometryUserPtr;
-    Packet          *p = (Packet *)a->context;
-    const Visit      v = visit_of(p, list, a->primID, fields_of(a->valid, a->N, a->rayhit));
-    unsigned         nearer = v.tables ? first_by_table(p, v.card, a->primID, v.tables) : 0;
-    for (unsigned left = v.plant; left; left &= left - 1) {
-        const int l = __builtin_ctz(left);
-        if (!plant_first(&p->ray[l], list, a->primID)) continue;
-        nearer |= 1u << l, p->table_hit &= ~(1u << l);
-    }
-    for (unsigned k = 0; nearer && k < v.of.n; k++) {
-        const ListRay *ray = &p->ray[v.of.id[k]];
-        if (v.of.valid[k] && nearer >> v.of.id[k] & 1) v.of.end_m[k] = (float)((ray->limit_m - ray->piece_m) * past);
-    }
-}
-
-static unsigned stopped_by_table(Packet *p, const Card *card, uint32_t place, unsigned lanes)
-{
-    float    range_m[card_lanes];
-    uint32_t quad[card_lanes];
-    unsigned stopped = 0;
-    for (unsigned met = card_meets(range_m, quad, card, &p->rays, place, lanes); met; met &= met - 1) {
-        const int l = __builtin_ctz(met);
-        if ((double)range_m[l] < p->ray[l].limit_m) p->ray[l].met = true, stopped |= 1u << l;
-    }
-    return stopped;
-}
-
-void plant_occlude(const struct RTCOccludedFunctionNArguments *a)
-{
-    const PlantList *list = a->geometryUserPtr;
-    Packet          *p = (Packet *)a->context;
-    const Visit      v = visit_of(p, list, a->primID, fields_of(a->valid, a->N, a->ray));
-    unsigned         stopped = v.tables ? stopped_by_table(p, v.card, a->primID, v.tables) : 0;
-    for (unsigned left = v.plant; left; left &= left - 1) {
-        const int l = __builtin_ctz(left);
-        if (plant_stops(&p->ray[l], list, a->primID)) stopped |= 1u << l;
-    }
-    for (unsigned k = 0; stopped && k < v.of.n; k++)
-        if (v.of.valid[k] && stopped >> v.of.id[k] & 1) v.of.end_m[k] = -INFINITY;
-}
+/* render/trace/plants/forest_packets.c: rays through a frame's plants, eight at a time: standing ones, low ones, and
+ * those of pages. */
+#include "render/trace/plants/forest_packets_private.h"
 
 /* ---- packets ---------------------------------------------------------------------------------- */
 
@@ -163,7 +30,6 @@ static bool open_ray(Packet *p, int lane, const double *const o_enu[3], const do
     for (int c = 0; c < 3; c++) {
         ray->o_enu[c] = o_enu[c][i], ray->d_enu[c] = d_enu[c][i];
         p->rays.d[c][lane] = (float)ray->d_enu[c];
-        if (p->rays.way_enu) p->rays.o[c][lane] = (float)(ray->o_enu[c] - frame->forest->standing.origin_enu[c]);
     }
     const double *way = p->rays.way_enu;
     const bool    alike =
@@ -182,30 +48,98 @@ static void put_ray(struct RTCRay8 *rays, int lane, const double o[3], const dou
     rays->mask[lane] = ~0u, rays->id[lane] = (unsigned)lane, rays->flags[lane] = 0;
 }
 
-static void start_of(double o[3], const ListRay *ray, const PlantList *list)
+static void put_none(struct RTCRay8 *rays, int lane)
 {
-    v3_sub(o, ray->o_enu, list->origin_enu);
+    put_ray(rays, lane, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 0);
 }
 
-/* ---- first hits ------------------------------------------------------------------------------- */
-
-static void first_straight(Packet *p, const PlantList *list, unsigned lanes)
+/* Whether Embree may cull boxes for all lanes at once: by a frustum, in which rays along an axis, or of several
+ * octants, miss boxes that they enter. */
+static bool is_frustum(const struct RTCRay8 *rays, unsigned lanes)
 {
-    struct RTCRayHit8 outer;
-    int               valid[card_lanes] __attribute__((aligned(32)));
-    for (int l = 0; l < card_lanes; l++) {
-        const ListRay *ray = &p->ray[l];
-        const bool     runs = lanes >> l & 1;
-        double         o[3] = {0};
-        valid[l] = runs ? -1 : 0;
-        if (runs) start_of(o, ray, list);
-        put_ray(&outer.ray, l, o, runs ? ray->d_enu : (const double[3]){0, 0, 1}, runs ? ray->limit_m * past : 0);
-        outer.hit.geomID[l] = RTC_INVALID_GEOMETRY_ID;
+    static const float least = 1e-3f;
+    const float *const d[3] = {rays->dir_x, rays->dir_y, rays->dir_z};
+    for (int c = 0; c < 3; c++) {
+        const F32x8    along = f32x8_load(d[c]);
+        const unsigned up = f32x8_bits(f32x8_less(f32x8_set((double)least), along)) & lanes;
+        const unsigned down = f32x8_bits(f32x8_less(along, f32x8_set((double)-least))) & lanes;
+        if (up != lanes && down != lanes) return false;
     }
-    rtcIntersect8(valid, list->scene, &p->base, &outer);
+    return true;
 }
 
-/* Ranges between which a ray is over a list's plants. */
+/* First hits of these lanes; the others are filled in. Also from within Embree's callbacks. */
+static void intersect(Packet *p, RTCScene scene, struct RTCRayHit8 *rays, unsigned lanes)
+{
+    const enum RTCIntersectContextFlags flags = p->base.flags;
+    int                                 valid[card_lanes] __attribute__((aligned(32)));
+    for (int l = 0; l < card_lanes; l++) {
+        valid[l] = lanes >> l & 1 ? -1 : 0;
+        if (!valid[l]) put_none(&rays->ray, l);
+        rays->hit.geomID[l] = RTC_INVALID_GEOMETRY_ID;
+    }
+    p->base.flags =
+        is_frustum(&rays->ray, lanes) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_NONE;
+    rtcIntersect8(valid, scene, &p->base, rays);
+    p->base.flags = flags;
+}
+
+/* Likewise whether they are stopped. */
+static void occlude(Packet *p, RTCScene scene, struct RTCRay8 *rays, unsigned lanes)
+{
+    int valid[card_lanes] __attribute__((aligned(32)));
+    for (int l = 0; l < card_lanes; l++) {
+        valid[l] = lanes >> l & 1 ? -1 : 0;
+        if (!valid[l]) put_none(rays, l);
+    }
+    rtcOccluded8(valid, scene, &p->base, rays);
+}
+
+/* The ray's origin, about that of plants. */
+static void start_of(double o[3], Packet *p, int lane, const double origin_enu[3])
+{
+    for (int c = 0; c < 3; c++) {
+        o[c] = p->ray[lane].o_enu[c] - origin_enu[c];
+        p->rays.o[c][lane] = (float)o[c];
+    }
+}
+
+/* ---- scenes ----------------------------------------------------------------------------------- */
+
+/* What rays are traced through: standing plants, low ones, pages. */
+typedef struct PlantScene {
+    RTCScene         scene;
+    double           origin_enu[3];
+    double           piece_m; /* bent rays go through it in straight pieces of this length */
+    struct RTCBounds bounds;
+} PlantScene;
+
+enum { most_scenes = 3 };
+
+static void add_scene(PlantScene out[most_scenes], int *count, RTCScene scene, const double origin_enu[3],
+                      double piece_m)
+{
+    PlantScene *to = &out[*count];
+    if (!scene) return;
+    to->scene = scene, to->piece_m = piece_m;
+    memcpy(to->origin_enu, origin_enu, sizeof to->origin_enu);
+    rtcGetSceneBounds(scene, &to->bounds);
+    ++*count;
+}
+
+static int scenes_of(PlantScene out[most_scenes], const ForestFrame *frame)
+{
+    static const double piece_m = 1600; /* 13 mm off at most: less than plants' boxes have room for */
+    const PlantList    *standing = &frame->forest->standing, *low = low_plants_list(frame);
+    const PagesInReach *far = frame->far;
+    int                 count = 0;
+    add_scene(out, &count, standing->scene, standing->origin_enu, piece_m);
+    if (low) add_scene(out, &count, low->scene, low->origin_enu, piece_m);
+    if (far) add_scene(out, &count, far->scene, far->origin_enu, page_piece_m);
+    return count;
+}
+
+/* Ranges between which a ray is over the plants of these bounds. */
 static bool over_plants(double span_m[2], const ListRay *ray, const struct RTCBounds *b, const double o[3])
 {
     static const double farthest_m = 1e7;
@@ -219,20 +153,115 @@ static bool over_plants(double span_m[2], const ListRay *ray, const struct RTCBo
     return span_m[0] < span_m[1];
 }
 
-/* A bent ray over a list's plants, in straight pieces. */
+/* ---- pages ------------------------------------------------------------------------------------ */
+
+/* A ray begins anew where it enters the box of a page's plants, in floats about the page: 50 km away a float steps by
+ * 4 mm. From there a bent one goes straight on to where it leaves them: 1.5 km on, it is 11 mm off at most. */
+static bool enter_page(struct RTCRay8 *inner, Packet *p, int lane, const PlantList *list, const struct RTCBounds *box)
+{
+    static const double room_m = 1;
+    ListRay            *ray = &p->ray[lane];
+    const double       *d = ray->d_enu;
+    double              o[3], span_m[2];
+    start_of(o, p, lane, list->origin_enu);
+    if (!over_plants(span_m, ray, box, o)) return false;
+    const double fall = ray->bend_per_m * (d[0] * d[0] + d[1] * d[1]);
+    const double z_m = o[2] + span_m[0] * (d[2] - fall * span_m[0]);
+    const double chord[3] = {d[0], d[1], d[2] - fall * (span_m[0] + span_m[1])};
+    const double per = fabs(chord[2]) < 1e-30 ? 1e30 : 1 / chord[2];
+    const double s = ((double)box->lower_z - room_m - z_m) * per, t = ((double)box->upper_z + room_m - z_m) * per;
+    const double in_m = larger(smaller(s, t), 0), out_m = smaller(larger(s, t), span_m[1] - span_m[0]);
+    if (!(in_m <= out_m)) return false;
+    ray->piece_m = span_m[0] + in_m;
+    const double start[3] = {o[0] + ray->piece_m * d[0], o[1] + ray->piece_m * d[1], z_m + in_m * chord[2]};
+    put_ray(inner, lane, start, chord, (out_m - in_m) * past + room_m);
+    return true;
+}
+
+/* Those of the lanes that enter the page. */
+static unsigned enter_lanes(struct RTCRay8 *inner, Packet *p, const PlantList *list, unsigned lanes)
+{
+    struct RTCBounds box;
+    unsigned         in = 0;
+    if (!list || !list->scene) return 0;
+    rtcGetSceneBounds(list->scene, &box);
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int l = __builtin_ctz(left);
+        if (enter_page(inner, p, l, list, &box)) in |= 1u << l;
+    }
+    return in;
+}
+
+void page_intersect(const struct RTCIntersectFunctionNArguments *a)
+{
+    const PagesInReach *pages = a->geometryUserPtr;
+    Packet             *p = (Packet *)a->context;
+    const Fields        of = fields_of(a->valid, a->N, a->rayhit);
+    const unsigned      lanes = lanes_of(&of);
+    struct RTCRayHit8   inner;
+    double              piece_m[card_lanes], limit_m[card_lanes];
+    unsigned            nearer = 0;
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int l = __builtin_ctz(left);
+        piece_m[l] = p->ray[l].piece_m, limit_m[l] = p->ray[l].limit_m;
+    }
+    const PlantList *list = far_page_need(pages, pages->page[a->primID].page);
+    const unsigned   in = enter_lanes(&inner.ray, p, list, lanes);
+    if (in) intersect(p, list->scene, &inner, in);
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int l = __builtin_ctz(left);
+        p->ray[l].piece_m = piece_m[l];
+        if (p->ray[l].limit_m < limit_m[l]) nearer |= 1u << l;
+    }
+    end_rays(&of, p, nearer);
+}
+
+void page_occlude(const struct RTCOccludedFunctionNArguments *a)
+{
+    const PagesInReach *pages = a->geometryUserPtr;
+    Packet             *p = (Packet *)a->context;
+    const Fields        of = fields_of(a->valid, a->N, a->ray);
+    const PlantList    *list = far_page_need(pages, pages->page[a->primID].page);
+    struct RTCRay8      inner;
+    unsigned            stopped = 0;
+    const unsigned      in = enter_lanes(&inner, p, list, lanes_of(&of));
+    if (in) occlude(p, list->scene, &inner, in);
+    for (unsigned left = in; left; left &= left - 1) {
+        const int l = __builtin_ctz(left);
+        if (p->ray[l].met) stopped |= 1u << l;
+    }
+    stop_rays(&of, stopped);
+}
+
+/* ---- first hits ------------------------------------------------------------------------------- */
+
+static void first_straight(Packet *p, const PlantScene *in, unsigned lanes)
+{
+    struct RTCRayHit8 outer;
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int l = __builtin_ctz(left);
+        double    o[3];
+        start_of(o, p, l, in->origin_enu);
+        put_ray(&outer.ray, l, o, p->ray[l].d_enu, p->ray[l].limit_m * past);
+    }
+    intersect(p, in->scene, &outer, lanes);
+}
+
+/* A bent ray over a scene's plants, in straight pieces. */
 typedef struct Pieces {
     double o[3], from_m, to_m, step_m, fall;
 } Pieces;
 
-static bool open_pieces(Pieces *out, const ListRay *ray, const PlantList *list, const struct RTCBounds *bounds)
+static bool open_pieces(Pieces *out, Packet *p, int lane, const PlantScene *in)
 {
-    static const double piece_m = 1600, nearest = 1e-4;
+    static const double nearest = 1e-4;
+    const ListRay      *ray = &p->ray[lane];
     double              span_m[2];
-    start_of(out->o, ray, list);
-    if (!over_plants(span_m, ray, bounds, out->o)) return false;
+    start_of(out->o, p, lane, in->origin_enu);
+    if (!over_plants(span_m, ray, &in->bounds, out->o)) return false;
     const double square = ray->d_enu[0] * ray->d_enu[0] + ray->d_enu[1] * ray->d_enu[1];
     out->from_m = span_m[0], out->to_m = span_m[1];
-    out->step_m = piece_m / larger(sqrt(square), nearest), out->fall = ray->bend_per_m * square;
+    out->step_m = in->piece_m / larger(sqrt(square), nearest), out->fall = ray->bend_per_m * square;
     return true;
 }
 
@@ -253,24 +282,18 @@ static bool put_piece(struct RTCRayHit8 *outer, Pieces *at, ListRay *ray, int l,
     return false;
 }
 
-/* In straight pieces, each within less of the ray than plants' boxes have room: a chord of 1.6 km is 13 mm off at most.
- * Every lane has the next of its own. */
-static void first_bent(Packet *p, const PlantList *list, const struct RTCBounds *bounds, unsigned lanes)
+/* In straight pieces, each within less of the ray than boxes have room. Every lane has the next of its own. */
+static void first_bent(Packet *p, const PlantScene *in, unsigned lanes)
 {
-    const double top_m = (double)bounds->upper_z + 1;
+    const double top_m = (double)in->bounds.upper_z + 1;
     Pieces       at[card_lanes];
     for (int l = 0; l < card_lanes; l++)
-        if (lanes >> l & 1 && !open_pieces(&at[l], &p->ray[l], list, bounds)) lanes &= ~(1u << l);
+        if (lanes >> l & 1 && !open_pieces(&at[l], p, l, in)) lanes &= ~(1u << l);
     while (lanes) {
         struct RTCRayHit8 outer;
-        int               valid[card_lanes] __attribute__((aligned(32)));
-        for (int l = 0; l < card_lanes; l++) {
+        for (int l = 0; l < card_lanes; l++)
             if (lanes >> l & 1 && !put_piece(&outer, &at[l], &p->ray[l], l, top_m)) lanes &= ~(1u << l);
-            valid[l] = lanes >> l & 1 ? -1 : 0;
-            if (!valid[l]) put_ray(&outer.ray, l, (const double[3]){0}, (const double[3]){0, 0, 1}, 0);
-            outer.hit.geomID[l] = RTC_INVALID_GEOMETRY_ID;
-        }
-        if (lanes) rtcIntersect8(valid, list->scene, &p->base, &outer);
+        if (lanes) intersect(p, in->scene, &outer, lanes);
     }
 }
 
@@ -282,31 +305,13 @@ static int ray_at(int k, int count, int columns)
     return (row + in % 8 / 4) * columns + in / 8 * 4 + in % 4;
 }
 
-/* Whether Embree may cull boxes for all lanes at once: by a frustum, in which rays along an axis, or of several
- * octants, miss boxes that they enter. */
-static bool is_frustum(const Packet *p, unsigned lanes)
-{
-    static const float least = 1e-3f;
-    for (int c = 0; c < 3; c++) {
-        const F32x8    d = f32x8_load(p->rays.d[c]);
-        const unsigned up = f32x8_bits(f32x8_less(f32x8_set((double)least), d)) & lanes;
-        const unsigned down = f32x8_bits(f32x8_less(d, f32x8_set((double)-least))) & lanes;
-        if (up != lanes && down != lanes) return false;
-    }
-    return true;
-}
-
 uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count,
                            const double *const o_enu[3], const double *const d_enu[3], const uint8_t *real)
 {
-    const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
-    struct RTCBounds bounds[2];
-    Packet           p;
-    Memory           kept;
-    for (int k = 0; k < 2; k++) {
-        if (lists[k] && !lists[k]->scene) lists[k] = NULL;
-        if (lists[k]) rtcGetSceneBounds(lists[k]->scene, &bounds[k]);
-    }
+    PlantScene scene[most_scenes];
+    Packet     p;
+    Memory     kept;
+    const int  scenes = scenes_of(scene, frame);
     open_packets(&p, &kept, frame, NULL);
     p.rays.bend_per_m = frame->bend_per_m;
     for (int first = 0; first < count; first += card_lanes) {
@@ -319,21 +324,19 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
             const int i = of[l] = ray_at(first + l, count, frame->columns);
             if (open_ray(&p, l, o_enu, d_enu, i, range_m[i], real && real[i])) lanes |= 1u << l;
         }
-        if (is_frustum(&p, lanes)) p.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-        for (int k = 0; k < 2; k++) {
-            if (!lists[k]) continue;
-            if (frame->bend_per_m > 0) first_bent(&p, lists[k], &bounds[k], lanes);
-            else first_straight(&p, lists[k], lanes);
+        for (int k = 0; k < scenes && lanes; k++) {
+            if (frame->bend_per_m > 0) first_bent(&p, &scene[k], lanes);
+            else first_straight(&p, &scene[k], lanes);
         }
         for (unsigned left = lanes & p.table_hit; left; left &= left - 1) { /* they lie far apart in memory */
             const ForestHit *met = &p.ray[__builtin_ctz(left)].hit;
-            const int        kind = lists[0]->plant[met->place].kind;
+            const int        kind = forest_list_of(frame, met)->plant[met->place].kind;
             __builtin_prefetch(&frame->forest->table[kind]->shape->shape->quad[met->quad]);
         }
         for (int l = 0; l < some; l++) {
             ListRay *ray = &p.ray[l];
             if (!(lanes >> l & 1) || !ray->met) continue;
-            if (p.table_hit >> l & 1) plant_complete(ray, lists[0]);
+            if (p.table_hit >> l & 1) plant_complete(ray, forest_list_of(frame, &ray->hit));
             range_m[of[l]] = ray->limit_m;
             hit[of[l]] = ray->hit;
             hit[of[l]].by_table = p.table_hit >> l & 1;
@@ -344,28 +347,27 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
 
 /* ---- any hits --------------------------------------------------------------------------------- */
 
-static void any_straight(Packet *p, const PlantList *list, unsigned lanes)
+static void any_straight(Packet *p, const PlantScene *in, unsigned lanes)
 {
     struct RTCRay8 outer;
-    int            valid[card_lanes] __attribute__((aligned(32)));
-    for (int l = 0; l < card_lanes; l++) {
-        const ListRay *ray = &p->ray[l];
-        const bool     runs = lanes >> l & 1 && !ray->met;
-        double         o[3] = {0};
-        valid[l] = runs ? -1 : 0;
-        if (runs) start_of(o, ray, list);
-        put_ray(&outer, l, o, runs ? ray->d_enu : (const double[3]){0, 0, 1}, runs ? ray->limit_m * past : 0);
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int l = __builtin_ctz(left);
+        double    o[3];
+        if (p->ray[l].met) lanes &= ~(1u << l);
+        start_of(o, p, l, in->origin_enu);
+        put_ray(&outer, l, o, p->ray[l].d_enu, p->ray[l].limit_m * past);
     }
-    rtcOccluded8(valid, list->scene, &p->base, &outer);
+    if (lanes) occlude(p, in->scene, &outer, lanes);
 }
 
 uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, const double *const o_enu[3],
                          const double *const d_enu[3], const double *far_m, const ForestLeft *left)
 {
-    const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
-    double           way[3] = {0};
-    Packet           p;
-    Memory           kept;
+    PlantScene scene[most_scenes];
+    double     way[3] = {0};
+    Packet     p;
+    Memory     kept;
+    const int  scenes = scenes_of(scene, frame);
     for (int c = 0; c < 3 && count > 0; c++) way[c] = d_enu[c][0];
     open_packets(&p, &kept, frame, way);
     for (int i = 0; i < count;) {
@@ -377,13 +379,12 @@ uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, con
             if (dark[i]) continue;
             const int l = some++;
             of[l] = i;
-            p.rays.own_place[l] = p.rays.own_quad[l] = -1;
-            if (left && left->place)
-                p.rays.own_place[l] = (int32_t)left->place[i], p.rays.own_quad[l] = (int32_t)left->quad[i];
+            p.rays.own_plant[l] = p.rays.own_quad[l] = -1;
+            if (left && left->plant)
+                p.rays.own_plant[l] = (int32_t)left->plant[i], p.rays.own_quad[l] = (int32_t)left->quad[i];
             if (open_ray(&p, l, o_enu, d_enu, i, far_m[i], left && left->real && left->real[i])) lanes |= 1u << l;
         }
-        for (int k = 0; k < 2 && lanes; k++)
-            if (lists[k] && lists[k]->scene) any_straight(&p, lists[k], lanes);
+        for (int k = 0; k < scenes && lanes; k++) any_straight(&p, &scene[k], lanes);
         for (int l = 0; l < some; l++) dark[of[l]] = lanes >> l & 1 && p.ray[l].met;
     }
     return p.entered;

@@ -18,7 +18,8 @@ typedef struct ShapeScene {
     const LeafPattern *pattern;            /* [plant_outlines]; NULL: leaves have outlines */
     double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
     const double (*azimuth)[2];            /* unit vectors of azimuths, [shape_azimuths + 1] of the forest */
-    double most;                           /* a coordinate of its box has, either way; of a hull alone */
+    double most;                           /* a coordinate of its box has, either way; of a hull alone, as the next */
+    double radius;                         /* of a ball about its axis at half its height, which holds the box */
     double reach[shape_azimuths + 1];      /* how far it reaches towards azimuths from x to y, from its axis; the last
                                             * is the first */
 } ShapeScene;
@@ -76,15 +77,19 @@ typedef struct PlantList {
     const struct Forest *forest;
     const ForestFrame   *frame; /* of the low plants; NULL: of the ray's own */
     const Plant         *plant;
-    const uint32_t      *number; /* ForestHit.plant of each; NULL: its place */
+    const uint32_t      *number; /* ForestHit.plant of each; NULL: its place and `base` */
+    uint32_t             base;
     int                  count;
+    int                  per_box; /* so many neighbours in the list share a box of Embree's tree */
+    bool                 far;     /* of a page: they end by forest_far_share */
     double               origin_enu[3];
     RTCScene             scene; /* NULL: none */
     int8_t (*bounds)[6];        /* [count] box of each about its foot, without sway: lowest and highest, in units of
-                                 * plant_bounds_unit_m; NULL: not kept */
+                                 * the plant's (forest_boxes.c); NULL: not kept */
 } PlantList;
 
-typedef struct LowSquares LowSquares; /* low_plants.c */
+typedef struct LowSquares  LowSquares;  /* low_plants.c */
+typedef struct ForestPages ForestPages; /* forest_pages.c */
 
 struct Forest {
     RTCDevice     device;
@@ -99,6 +104,8 @@ struct Forest {
     bool          borrows;               /* their scenes and tables */
     PlantList     standing;
     LowSquares   *squares;
+    ForestPages  *pages;       /* NULL: none */
+    RTCDevice     page_device; /* of pages: builds in the thread that asks */
 };
 
 /* A number in 0 .. 1 of a plant, by where it stands and how high it is: neighbours change their level at different
@@ -118,6 +125,15 @@ static inline double larger(double a, double b) { return a > b ? a : b; }
 
 static const double past = 1 + 1e-6; /* a float's distance may be that much short */
 
+/* ForestHit.plant of a plant of a list. */
+static inline uint32_t plant_number(const PlantList *list, uint32_t place)
+{
+    return list->number ? list->number[place] : list->base + place;
+}
+
+/* forest.c: latches the first error of a device of the forest, and says what it was. */
+void   forest_latch_error(void *forest, enum RTCError code, const char *text);
+Status forest_status(const struct Forest *forest);
 /* A tree of boxes over a list. STATUS_NO_MEMORY. */
 Status plant_list_commit(PlantList *list, const struct Forest *forest, bool quick);
 void   plant_list_close(PlantList *list);
@@ -161,21 +177,53 @@ typedef struct ListRay {
     ForestHit          hit;
 } ListRay;
 
-/* The ray's first hit of a plant, where it is nearer than limit_m, or as near and of a lower place: true. */
+static inline void foot_of(double foot_enu[3], const PlantList *list, const Plant *plant)
+{
+    for (int c = 0; c < 3; c++) foot_enu[c] = list->origin_enu[c] + (double)plant->p_m[c];
+}
+
+/* A vector of ENU in the prototype's axes, scaled so that its height is 1. */
+static inline void to_prototype(double out[3], const double axis[3][3], const double per[2], const double v_enu[3])
+{
+    out[0] = v3_dot(axis[0], v_enu) * per[0];
+    out[1] = v3_dot(axis[1], v_enu) * per[0];
+    out[2] = v3_dot(axis[2], v_enu) * per[1];
+}
+
+typedef struct QuadPlane {
+    double a[3], u[3], v[3], n[3]; /* a corner, two sides from it, and their product */
+} QuadPlane;
+
+static inline void plane_of(QuadPlane *out, const PlantQuad *quad)
+{
+    for (int c = 0; c < 3; c++) {
+        out->a[c] = (double)quad->corner[0][c];
+        out->u[c] = (double)quad->corner[1][c] - out->a[c];
+        out->v[c] = (double)quad->corner[3][c] - out->a[c];
+    }
+    v3_cross(out->n, out->u, out->v);
+    if (v3_dot(out->n, out->n) > 0) return;
+    for (int c = 0; c < 3; c++)
+        out->v[c] = (double)quad->corner[2][c] - out->a[c]; /* a triangle: corners 0 and 3, or 0 and 1, are one */
+    v3_cross(out->n, out->u, out->v);
+}
+
+/* The ray's first hit of a plant, where it is nearer than limit_m, or as near and of a lower number: true. */
 bool plant_first(ListRay *ray, const PlantList *list, uint32_t place);
 /* Whether the plant stops the ray before limit_m. */
 bool plant_stops(ListRay *ray, const PlantList *list, uint32_t place);
 /* Fills in what of a hit follows from its plant, quad and range. */
 void plant_complete(ListRay *ray, const PlantList *list);
 /* Axes and scales of a plant as it stands in a frame. */
-void plant_axes_in(double axis[3][3], double scale[2], const ForestFrame *frame, const Plant *plant);
+void plant_axes_in(double axis[3][3], double scale[2], const ForestFrame *frame, const PlantList *list,
+                   const Plant *plant);
 /* Whether a ray of a prototype's own axes meets it. */
 bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3]);
 /* Its first quad, and how far; o: about the middle of the prototype's box. False: none. */
 bool shape_first(uint32_t *quad, double *at_m, const ShapeScene *shape, const double o[3], const double d[3]);
 
-/* Unit of PlantList.bounds of a plant. */
-double plant_bounds_unit_m(const PlantList *list, const Plant *plant);
+/* The box that a plant is within, with room for its sway, about its foot: as the list keeps it, else a wider one. */
+void plant_bounds(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant);
 /* Angle of a vector from x towards y, within 0.005 rad; 0, 0: 0. */
 double plant_rough_angle(double x, double y);
 
@@ -188,8 +236,8 @@ typedef struct CardRays {
     const ForestFrame *frame;
     const double      *way_enu; /* NULL: they leave the eye */
     double             bend_per_m;
-    float              d[3][card_lanes], o[3][card_lanes]; /* o: about the list's origin; not of rays from the eye */
-    int32_t own_place[card_lanes], own_quad[card_lanes];   /* of the plant and the quad that a ray leaves; -1: none */
+    float              d[3][card_lanes], o[3][card_lanes]; /* o: about the list's origin */
+    int32_t own_plant[card_lanes], own_quad[card_lanes];   /* numbers of the plant and the quad that a ray leaves; -1 */
 } CardRays;
 
 /* A plant by its table: what is met on the way from the eye to its middle, or against the way of the rays. Metres of
@@ -206,9 +254,11 @@ typedef struct Card {
 } Card;
 
 void card_make(Card *card, const CardRays *rays, const PlantList *list, const Plant *plant);
-/* Those of the lanes that meet the plant; their ranges and quads. place: of the plant in its list. */
+/* Those of the lanes that meet the plant; their ranges and quads. plant: its number. */
 unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const Card *card, const CardRays *rays,
-                    uint32_t place, unsigned lanes);
+                    uint32_t plant, unsigned lanes);
+/* Those of the lanes whose rays come within reach_m of a place about the list's origin; within 0.02 m, 50 km away. */
+unsigned card_near(const CardRays *rays, const float at_m[3], double reach_m, unsigned lanes);
 
 /* low_plants.c */
 LowSquares      *low_squares_create(void); /* NULL: no memory */
@@ -216,6 +266,42 @@ void             low_squares_destroy(LowSquares *squares);
 Status           low_plants_open(ForestFrame *frame, double reach_m, Pool *pool, Arena *arena);
 void             low_plants_close(ForestFrame *frame);
 const PlantList *low_plants_list(const ForestFrame *frame);
+
+/* ---- pages (forest_pages.c) --------------------------------------------------------------------- */
+
+/* A page, and the box of ENU that its plants are in. */
+typedef struct PageInReach {
+    int    page;
+    double low_enu[3], high_enu[3];
+} PageInReach;
+
+/* The pages in reach of a frame, as one scene of their boxes about origin_enu. */
+typedef struct PagesInReach {
+    Forest              *forest;
+    uint64_t             serial; /* of the frame */
+    double               origin_enu[3];
+    int                  count;
+    PageInReach         *page;  /* [count] */
+    RTCScene             scene; /* NULL: none is in reach */
+    struct PagesInReach *next;
+} PagesInReach;
+
+static const double page_piece_m = 16000; /* pieces of bent rays through that scene: 4 m off at most, of 5 m of room */
+
+/* Nothing where the woods have no pages, or config.far_m is 0. */
+Status forest_pages_create(Forest *forest, const char *isa);
+void   forest_pages_destroy(Forest *forest);
+Status far_pages_open(ForestFrame *frame, Pool *pool);
+void   far_pages_close(ForestFrame *frame);
+/* The plants of a page in reach, made if need be; NULL: there is no memory for them. */
+const PlantList *far_page_need(const PagesInReach *in_reach, int page);
+/* Whether a plant of a page is too far from the frame's eye for its number. */
+bool far_page_lacks(const ForestFrame *frame, const PlantList *list, uint32_t place);
+/* The list that a hit's plant is in. */
+const PlantList *forest_list_of(const ForestFrame *frame, const ForestHit *hit);
+/* forest_packets.c: Embree's callbacks of the scene of pages: user pointer is the PagesInReach. */
+void page_intersect(const struct RTCIntersectFunctionNArguments *a);
+void page_occlude(const struct RTCOccludedFunctionNArguments *a);
 
 static const double most_sway_rad = 0.2; /* of any plant in any wind: room in its box */
 /* That room. */

@@ -17,19 +17,17 @@ typedef struct QuadRay {
 
 /* ---- a plant's frame -------------------------------------------------------------------------- */
 
-static void foot_of(double foot_enu[3], const PlantList *list, const Plant *plant)
-{
-    for (int c = 0; c < 3; c++) foot_enu[c] = list->origin_enu[c] + (double)plant->p_m[c];
-}
-
-void plant_axes_in(double axis[3][3], double scale[2], const ForestFrame *frame, const Plant *plant)
+void plant_axes_in(double axis[3][3], double scale[2], const ForestFrame *frame, const PlantList *list,
+                   const Plant *plant)
 {
     double sway_rad[2];
     if (!(frame->forest->config.sway > 0)) {
         plant_axes(axis, scale, plant, NULL);
         return;
     }
-    forest_sway(sway_rad, frame, plant, (double)plant->p_m[0], (double)plant->p_m[1]);
+    double p_m[2] = {(double)plant->p_m[0], (double)plant->p_m[1]}; /* from the woods' origin, in pages too */
+    for (int c = 0; c < 2 && list->far; c++) p_m[c] += list->origin_enu[c] - list->forest->woods->origin_enu[c];
+    forest_sway(sway_rad, frame, plant, p_m[0], p_m[1]);
     plant_axes(axis, scale, plant, sway_rad);
 }
 
@@ -40,19 +38,11 @@ static const PlantFrame *frame_of(ListRay *ray, const PlantList *list, const Pla
     if (f->plant == plant) return f;
     f->plant = plant;
     foot_of(f->foot_enu, list, plant);
-    plant_axes_in(axis, scale, ray->frame, plant);
+    plant_axes_in(axis, scale, ray->frame, list, plant);
     for (int c = 0; c < 3; c++) f->column[c] = (F64x4){axis[0][c], axis[1][c], axis[2][c], 0};
     f->per = (F64x4){1 / scale[0], 1 / scale[0], 1 / scale[1], 0};
     f->level = forest_level(ray->frame, plant, f->foot_enu);
     return f;
-}
-
-/* A vector of ENU in the prototype's axes, scaled so that its height is 1. */
-static void to_prototype(double out[3], const double axis[3][3], const double per[2], const double v_enu[3])
-{
-    out[0] = v3_dot(axis[0], v_enu) * per[0];
-    out[1] = v3_dot(axis[1], v_enu) * per[0];
-    out[2] = v3_dot(axis[2], v_enu) * per[1];
 }
 
 /* Does what to_prototype does, to the same bits. */
@@ -93,25 +83,6 @@ static bool enter_plant(QuadRay *q, double *start_m, ListRay *ray, const PlantLi
 }
 
 /* ---- quads ------------------------------------------------------------------------------------ */
-
-typedef struct QuadPlane {
-    double a[3], u[3], v[3], n[3]; /* a corner, two sides from it, and their product */
-} QuadPlane;
-
-static void plane_of(QuadPlane *out, const PlantQuad *quad)
-{
-    for (int c = 0; c < 3; c++) {
-        out->a[c] = (double)quad->corner[0][c];
-        out->u[c] = (double)quad->corner[1][c] - out->a[c];
-        out->v[c] = (double)quad->corner[3][c] - out->a[c];
-    }
-    v3_cross(out->n, out->u, out->v);
-    if (v3_dot(out->n, out->n) > 0) return;
-    for (int c = 0; c < 3; c++)
-        out->v[c] = (double)quad->corner[2][c] - out->a[c]; /* a triangle: corners 0 and 3, or 0
-                                                             * and 1, are one */
-    v3_cross(out->n, out->u, out->v);
-}
 
 /* A ray and the plane of a quad. */
 typedef struct QuadPass {
@@ -231,13 +202,13 @@ bool plant_first(ListRay *ray, const PlantList *list, uint32_t place)
     rtcIntersect1(q.shape->scene, &q.base, &inner);
     const double at_m = start_m + q.nearest_m;
     if (!(q.nearest_m < INFINITY) || !(at_m <= ray->limit_m)) return false;
-    if (at_m == ray->limit_m && !(ray->met && place < ray->hit.place)) return false;
+    if (at_m == ray->limit_m && !(ray->met && plant_number(list, place) < ray->hit.plant)) return false;
     const Plant     *plant = &list->plant[place];
     const PlantQuad *quad = &q.shape->shape->quad[q.quad];
     ray->limit_m = at_m;
     ray->met = true;
     ray->hit = (ForestHit){
-        .plant = list->number ? list->number[place] : place,
+        .plant = plant_number(list, place),
         .place = place,
         .quad = q.quad,
         .kind = plant->kind,
@@ -285,95 +256,7 @@ void plant_complete(ListRay *ray, const PlantList *list)
     hit->uv[0] = (float)clamp(v3_dot(side, plane.n) / square, 0, 1);
     v3_cross(side, plane.u, p);
     hit->uv[1] = (float)clamp(v3_dot(side, plane.n) / square, 0, 1);
-    hit->plant = list->number ? list->number[hit->place] : hit->place;
+    hit->plant = plant_number(list, hit->place);
     hit->kind = plant->kind, hit->organ = quad->organ, hit->level = (uint8_t)level;
     hit->back = (double)quad->n[0][0] * d[0] + (double)quad->n[0][1] * d[1] + (double)quad->n[0][2] * d[2] > 0;
-}
-
-/* ---- surfaces --------------------------------------------------------------------------------- */
-
-/* A normal of the prototype, in ENU. */
-static void turn_normal(double out[3], const double axis[3][3], const double per[2], const double n[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = axis[0][c] * per[0] * n[0] + axis[1][c] * per[0] * n[1] + axis[2][c] * per[1] * n[2];
-    if (!v3_normalize(out, out)) out[0] = out[1] = 0, out[2] = 1;
-}
-
-/* The corners' normals, mixed, and bent by relief: slopes about and along the branch, whose sides are u and v. */
-static void bark_normal(double n[3], const PlantQuad *quad, const QuadPlane *plane, const float uv[2],
-                        const float slope[2])
-{
-    const double u = clamp((double)uv[0], 0, 1), v = clamp((double)uv[1], 0, 1);
-    const double share[4] = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
-    double       along[3] = {0}, about[3] = {0};
-    for (int c = 0; c < 3; c++) {
-        n[c] = 0;
-        for (int k = 0; k < 4; k++) n[c] += share[k] * (double)quad->n[k][c];
-    }
-    if (slope[0] == 0 && slope[1] == 0) return;
-    v3_normalize(n, n);
-    if (v3_normalize(along, plane->v)) v3_add_scaled(n, n, -(double)slope[0], along);
-    if (v3_normalize(about, plane->u)) v3_add_scaled(n, n, -(double)slope[1], about);
-}
-
-/* Reflectance and normal of a place on a leaf; side: of the ray. */
-static void leaf_surface(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const double axis[3][3],
-                         const double per[2], const QuadPlane *plane, double side)
-{
-    const ShapeScene *shape = &frame->forest->shape[hit->kind][hit->level];
-    const PlantQuad  *quad = &shape->shape->quad[hit->quad];
-    memcpy(out->n_enu, out->n_geo, sizeof out->n_enu);
-    if (!shape->pattern) {
-        out->albedo = plants_leaf_albedo((PlantKind)hit->kind, hit->plant, quad->piece);
-        return;
-    }
-    const LeafPlace at =
-        plants_leaf_place(frame->forest->plants, (PlantKind)hit->kind, hit->plant, quad, hit->quad, hit->uv);
-    double n[3], u[3], v[3];
-    out->albedo = at.albedo;
-    if (!v3_normalize(n, plane->n) || !v3_normalize(u, plane->u) || !v3_normalize(v, plane->v)) return;
-    v3_add_scaled(n, n, (double)at.slope[0], u);
-    v3_add_scaled(n, n, (double)at.slope[1], v);
-    turn_normal(out->n_enu, axis, per, n);
-    v3_scale(out->n_enu, side, out->n_enu);
-}
-
-void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const double o_enu[3],
-                    const double d_enu[3], double range_m, float footprint_m)
-{
-    const PlantList  *list = hit->plant & forest_low_bit ? low_plants_list(frame) : &frame->forest->standing;
-    const Plant      *plant = &list->plant[hit->place];
-    const PlantShape *shape = frame->forest->shape[hit->kind][hit->level].shape;
-    const PlantQuad  *quad = &shape->quad[hit->quad];
-    const double      height_m = plant_height_m(plant);
-    double            axis[3][3], scale[2], n[3];
-    QuadPlane         plane;
-    plant_axes_in(axis, scale, frame, plant);
-    const double per[2] = {1 / scale[0], 1 / scale[1]};
-    plane_of(&plane, quad);
-    turn_normal(out->n_geo, axis, per, plane.n);
-    const double side = v3_dot(out->n_geo, d_enu) > 0 ? -1 : 1;
-    v3_scale(out->n_geo, side, out->n_geo);
-    *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]},
-                           .open_up = quad->open_up,
-                           .open_down = quad->open_down,
-                           .radius_m = (float)(quad->radius * height_m),
-                           .height_m = (float)height_m};
-    double foot_enu[3], from[3], p[3];
-    foot_of(foot_enu, list, plant);
-    v3_sub(from, o_enu, foot_enu);
-    v3_add_scaled(from, from, range_m, d_enu);
-    to_prototype(p, axis, per, from);
-    out->height_share = (float)clamp(p[2], 0, 1);
-    if (quad->organ == PLANT_LEAF) {
-        leaf_surface(out, frame, hit, axis, per, &plane, side);
-        return;
-    }
-    const float p_m[3] = {(float)(p[0] * height_m), (float)(p[1] * height_m), (float)(p[2] * height_m)};
-    float       slope[2] = {0, 0};
-    plants_bark(&out->albedo, slope, (PlantKind)hit->kind, hit->plant, p_m, footprint_m);
-    bark_normal(n, quad, &plane, hit->uv, slope);
-    turn_normal(out->n_enu, axis, per, n);
-    if (v3_dot(out->n_enu, out->n_geo) < 0) v3_scale(out->n_enu, -1, out->n_enu);
 }

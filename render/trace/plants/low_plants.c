@@ -135,7 +135,7 @@ static void fill_square(void *user, int worker, int square)
         }
         const double share = sqrt(away2) / frame->low_reach_m;
         number[kept] = number_of(i, j, k);
-        if (2 * (1 - share) > plant_rank(number[kept])) plant[kept++] = p;
+        if (2 * (1 - share) > plant_rank(&p)) plant[kept++] = p;
     }
     low->count[square] = kept;
 }
@@ -166,7 +166,7 @@ Status low_plants_open(ForestFrame *frame, double reach_m, Pool *pool, Arena *ar
     LowPlants   *low = arena_alloc(arena, 1, sizeof *low);
     double       from[2], end[2];
     if (!low) return STATUS_NO_MEMORY;
-    *low = (LowPlants){.frame = frame, .list = {.forest = frame->forest, .frame = frame}};
+    *low = (LowPlants){.frame = frame, .list = {.forest = frame->forest, .frame = frame, .per_box = 1}};
     memcpy(low->list.origin_enu, woods->origin_enu, sizeof low->list.origin_enu);
     for (int k = 0; k < 2; k++) {
         const double eye_m = frame->eye_enu[k] - woods->origin_enu[k];

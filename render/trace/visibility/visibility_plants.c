@@ -100,7 +100,7 @@ static void plants_any(const TraceShadow *s, const void *self)
     const Visibility *v = s->v;
     double            start[3][hits_capacity], far_m[hits_capacity];
     uint8_t           dark[hits_capacity], real[hits_capacity];
-    uint32_t          place[hits_capacity], quad[hits_capacity];
+    uint32_t          plant[hits_capacity], quad[hits_capacity];
     int               ray[hits_capacity], left = 0;
     for (int i = 0; i < s->count; i++) {
         if (s->dark[i] && skips(v->skips_off, SKIP_SUN_STOPPED)) continue;
@@ -109,15 +109,15 @@ static void plants_any(const TraceShadow *s, const void *self)
         dark[left] = 0;
         const int hit = s->hit_of[i];
         real[left] = v->full_plants || s->hits->entity[hit] != 0; /* on entities falls that of real plants */
-        const bool plant = s->hits->kind[hit] == hit_plant;
-        place[left] = plant ? s->hits->instance[hit] - 1 : UINT32_MAX;
-        quad[left] = plant ? s->hits->facet[hit] : UINT32_MAX;
+        const bool leaves = s->hits->kind[hit] == hit_plant;
+        plant[left] = leaves ? s->hits->instance[hit] - 1 : UINT32_MAX;
+        quad[left] = leaves ? s->hits->facet[hit] : UINT32_MAX;
         ray[left++] = i;
     }
     if (left == 0) return;
     const double *const o[3] = {start[0], start[1], start[2]};
     s->counters->rays_sun_plants +=
-        forest_any_hits(dark, self, left, o, s->d_enu, far_m, &(ForestLeft){real, place, quad});
+        forest_any_hits(dark, self, left, o, s->d_enu, far_m, &(ForestLeft){real, plant, quad});
     for (int k = 0; k < left; k++) s->dark[ray[k]] |= dark[k];
 }
 

@@ -103,7 +103,8 @@ typedef struct Paths {
 static void add_path(Paths *p, const double a_m[2], const double b_m[2], double half_m, double low_half_m)
 {
     /* plants stand in whole squares, which reach beyond */
-    const double *c = p->square->centre_m, reach_m = p->square->half_width_m + 2 * woods_square_m + half_m;
+    const double *c = p->square->centre_m,
+                 reach_m = fmax(p->square->half_width_m, p->square->far_half_m) + 2 * woods_square_m + half_m;
     for (int k = 0; k < 2; k++) /* both ends beyond the same side of the square */
         if ((a_m[k] - c[k] > reach_m && b_m[k] - c[k] > reach_m) ||
             (a_m[k] - c[k] < -reach_m && b_m[k] - c[k] < -reach_m))
@@ -246,17 +247,23 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
 {
     const Woods *woods = &w->woods;
     const int    trees = trees_of(woods);
+    const char  *about = w->config.place_count ? "what is on the ground" : "the middle of the square";
     char         kinds[100];
     kinds_text(kinds, sizeof kinds, woods);
     choice_add(choices, "woods: %d trees%s%s%s, %d bushes and hedges, %.1f km about the %s (terrain.woods)", trees,
                *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m,
                config->terrain.woods_half_m >= 50 ? "aim" : "exercise");
-    if (woods->left_out > 0)
+    if (woods->left_out > 0 && woods->far && config->terrain.woods_far_m > 0)
+        choice_add(
+            choices,
+            "woods: %d more, those beyond %.0f m of %s, and others farther out are placed when a frame needs them, "
+            "within %.0f km of the sensor (terrain.woods_trees, woods_far_m)",
+            woods->left_out, woods->reach_m, about, 1e-3 * config->terrain.woods_far_m);
+    else if (woods->left_out > 0)
         choice_add(
             choices,
             "woods: %d more are left out, those beyond %.0f m of %s: the ground there shows their canopy (terrain.woods_trees)",
-            woods->left_out, woods->reach_m,
-            w->config.place_count ? "what is on the ground" : "the middle of the square");
+            woods->left_out, woods->reach_m, about);
     if (!real)
         choice_add(choices,
                    "woods: cleared along the paths of %d entit%s on the ground, where %d shot%s hit it, and "
@@ -281,6 +288,7 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
     const Catalog        *catalog = basis->catalog;
     const GroundEvidence *e = basis->evidence;
     const bool            stored = *config->terrain.store, real = stored || *config->terrain.elevation;
+    static const double   far_half_m = 50000; /* of any distance of terrain.woods_far_m about any sensor near by */
     int                   impacts = 0;
     *out = (WoodsChoice){.on = config->terrain.woods};
     if (!out->on) return STATUS_OK;
@@ -288,6 +296,7 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
                                 .centre_m = {square->centre_m[0], square->centre_m[1]},
                                 .half_width_m = square->half_width_m,
                                 .most_trees = config->terrain.woods_trees,
+                                .far_half_m = square->own ? 0 : far_half_m,
                                 .store = stored ? config->terrain.store : NULL,
                                 .cache = real ? NULL : basis->cache, /* files may change and keep their names */
                                 .follows = basis->follows};

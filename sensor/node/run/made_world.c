@@ -17,10 +17,10 @@ static const char *const layer_keys[MADE_LAYERS] = {
     [MADE_SURVEY] = "",
     [MADE_CATALOG] = "models.",
     [MADE_GROUND] = "seed terrain. -terrain.woods -terrain.detail",
-    [MADE_WOODS] =
-        "seed terrain. -terrain.detail -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway -terrain.woods_low_m",
-    [MADE_MODELS] =
-        "models. terrain.detail terrain.woods_leaves terrain.woods_level1_px terrain.woods_tables terrain.woods_sway",
+    [MADE_WOODS] = "seed terrain. -terrain.detail -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
+                   "-terrain.woods_low_m -terrain.woods_far_m -terrain.woods_far_mb",
+    [MADE_MODELS] = "models. terrain.detail terrain.woods_leaves terrain.woods_level1_px terrain.woods_tables "
+                    "terrain.woods_sway terrain.woods_far_m terrain.woods_far_mb",
     [MADE_AIR] = "weather.atmosphere weather.visibility_m weather.fog",
     [MADE_WARM] = "weather. heat.step_s heat.facets heat.shadow_m",
 };

@@ -12,10 +12,21 @@ const char *const explain_term_name[EXPLAIN_TERMS] = {
 
 /* ---- names ------------------------------------------------------------------------------------- */
 
+static const char *name_of_plant(const SavedScene *scene, uint32_t number)
+{
+    const Woods     *woods = &scene->woods;
+    const int        page = woods_page_of(number);
+    const WoodsPage *of;
+    if (number < (uint32_t)woods->count) return plant_name((PlantKind)woods->plant[number].kind);
+    if (number & forest_low_bit || page < 0 || page >= woods->pages_x * woods->pages_y) return "low plant";
+    const uint32_t place = number - woods_page_number(page);
+    if (forest_page_plants(&of, scene->world.forest, page) != STATUS_OK || place >= (uint32_t)of->count) return "plant";
+    return plant_name((PlantKind)of->plant[place].kind);
+}
+
 void explain_surface(char *out, size_t size, const Explained *e, const PixelSample *s)
 {
-    const Woods *woods = &e->scene->woods;
-    char         id[dis_id_text_size];
+    char id[dis_id_text_size];
     if (!(s->range_m < INFINITY)) {
         snprintf(out, size, "sky");
     } else if (s->entity) {
@@ -25,10 +36,7 @@ void explain_surface(char *out, size_t size, const Explained *e, const PixelSamp
         dis_entity_id_text(id, entity->id);
         snprintf(out, size, "%s %s, %s", id, model->name, part);
     } else if (s->kind == hit_plant) {
-        const uint32_t plant = s->plant - 1;
-        const bool     low = plant & forest_low_bit || plant >= (uint32_t)woods->count;
-        snprintf(out, size, "%s, %s", low ? "low plant" : plant_name((PlantKind)woods->plant[plant].kind),
-                 s->radius_m > 0 ? "wood" : "leaf");
+        snprintf(out, size, "%s, %s", name_of_plant(e->scene, s->plant - 1), s->radius_m > 0 ? "wood" : "leaf");
     } else {
         snprintf(out, size, "ground, %s", surface_name((SurfaceClass)s->surface));
     }

@@ -302,6 +302,7 @@ void saved_fields_woods(Fields *f, SavedFrame *file)
     field_list(f, &w->path_count, (void **)&w->path, sizeof *w->path, most_paths, path_fields);
     if (f->version >= 6)
         field_list(f, &w->place_count, (void **)&w->place, sizeof *w->place, most_places, place_fields);
+    if (f->version >= 8) field_real(f, "width of far plants", &w->far_half_m, 0, 50000);
 }
 
 /* ---- radar --------------------------------------------------------------------------------------- */
