@@ -135,7 +135,7 @@ static void fill_square(void *user, int worker, int square)
         }
         const double share = sqrt(away2) / frame->low_reach_m;
         number[kept] = number_of(i, j, k);
-        if (2 * (1 - share) > plant_rank(number[kept])) plant[kept++] = p;
+        if (2 * (1 - share) > plant_rank(&p)) plant[kept++] = p;
     }
     low->count[square] = kept;
 }
