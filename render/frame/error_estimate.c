@@ -41,6 +41,7 @@ typedef struct ProbeTask {
     const Candidate *candidate;
     float            base[picture_plane_count][probes_a_block];
     double           image_px[probes_a_block]; /* displacement of the ground on the image */
+    bool             plant[probes_a_block];    /* its ray meets one */
     double           sampling[picture_plane_count], detail[picture_plane_count], tables[picture_plane_count];
     double           tables_px;
     int              first; /* of its probes, those at hand; of squares: all of the block */
@@ -283,17 +284,6 @@ static void take_coarse(ProbeTask *t, const float *value, int plane)
     }
 }
 
-/* Adds the change of a plane's values when no plant is simplified. */
-static void take_full_plants(ProbeTask *t, const float *value, int plane)
-{
-    for (int p = 0; p < t->count; p++) {
-        const double apart = (double)(value[p] - t->base[plane][p]);
-        if (!(candidate_of(t, p)->planes >> plane & 1)) continue;
-        t->detail[plane] += t->probe[p].stands_for * apart * apart;
-        take_square(t, p, plane, apart * apart);
-    }
-}
-
 static void take_tables(ProbeTask *t, const float *value, int plane)
 {
     for (int p = 0; p < t->count; p++) {
@@ -378,16 +368,11 @@ static void probe_task(void *user, int worker, int index)
     }
     t->probe = first, t->count = count, t->first = 0;
     shade_base(w, job, t, listed);
+    for (int p = 0; p < count; p++) t->plant[p] = w->samples.hits.kind[p] == hit_plant;
     coarsen(&w->samples, job, t);
     block_light(w, job);
     for (int plane = 0; plane < picture_plane_count; plane++)
         if ((value = block_values(w, job, plane))) take_coarse(t, value, plane);
-    if (job->scene.full == job->scene.visibility) return;
-    Job full = *job;
-    full.scene.visibility = job->scene.full;
-    shade_pixels(w, &full, t, 1, listed);
-    for (int plane = 0; plane < picture_plane_count; plane++)
-        if ((value = block_values(w, &full, plane))) take_full_plants(t, value, plane);
 }
 
 /* ---- the whole ---------------------------------------------------------------------------------- */
@@ -441,6 +426,17 @@ static int deal(Budget *b, int probes, int of_tables)
     return tasks;
 }
 
+/* The error by plants, over the pixels that show some, to the squares of those probes. */
+static void take_plants(ProbeTask *t, const PlantPrice *plants)
+{
+    for (int k = 0; k < error_thermal_planes; k++) {
+        const double all = fmax(plants->structure_square[picture_mwir + k], 0),
+                     square = all * plants->rays / plants->met;
+        for (int p = 0; p < t->count; p++)
+            if (t->plant[p]) t->square[k][p] += (float)square;
+    }
+}
+
 Status error_estimate(const Job *job, Pool *pool, Arena *arena)
 {
     const double start_s = wall_clock_s();
@@ -462,6 +458,10 @@ Status error_estimate(const Job *job, Pool *pool, Arena *arena)
             draw_probes(b.probe + out->probes, target_blocks * probes_a_block, &b, b.target_first, b.candidates);
     const int tasks = deal(&b, out->probes, draw_tables(&b, out->mean));
     pool_run(pool, tasks, probe_task, &b);
+    if (job->scene.full != job->scene.visibility) status = plant_price(&out->plants, job, pool, arena);
+    if (status != STATUS_OK) return status;
+    for (int t = 0; t < tasks && out->plants.met > 0; t++)
+        if (!b.task[t].of_tables) take_plants(&b.task[t], &out->plants);
 
     const int tiles = job->law ? job->tiles_x * job->tiles_y : 0;
     double    tables_px = 0;
@@ -477,7 +477,7 @@ Status error_estimate(const Job *job, Pool *pool, Arena *arena)
         }
         const bool there = picture_plane(picture, k) != NULL;
         out->sampling[k] = there ? sqrt(sampling / pixels) : NAN;
-        out->level_of_detail[k] = there ? sqrt(detail / pixels) : NAN;
+        out->level_of_detail[k] = there ? sqrt(detail / pixels + fmax(out->plants.structure_square[k], 0)) : NAN;
         out->tables[k] = there ? sqrt(tables_px > 0 ? tables / tables_px : 0) : NAN;
         if (!there) out->mean[k] = NAN;
     }

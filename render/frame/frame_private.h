@@ -152,7 +152,7 @@ Status target_sums_gather(Picture *picture, const SumRules *rules, const WorkerS
  *   edges          pixels whose neighbours differ, with more rays          edges.c selects, refine.c samples
  *   leaves         pixels of plants, smoothed among themselves              leaf_filter.c
  *   composite      the small targets, over the pixels                      target_grid_picture.c
- *   error estimate a few pixels, re-sampled                                error_estimate.c
+ *   error estimate a few pixels, re-sampled                                error_estimate.c, plant_price.c
  * Each of them shades samples (shade.h) and sums the results in its own way; render.c runs them in turn. */
 
 enum { tile_side_samples = 32 };
@@ -366,6 +366,8 @@ static inline bool record_in_box(const Job *job, int x0, int y0, int x1, int y1)
 
 /* The last pass: fills picture->budget. STATUS_NO_MEMORY. */
 Status error_estimate(const Job *job, Pool *pool, Arena *arena);
+/* Where plants are simplified, or met in tables: what that costs. STATUS_NO_MEMORY. */
+Status plant_price(PlantPrice *out, const Job *job, Pool *pool, Arena *arena);
 
 /* ---- a small target: target_grid.c samples it, target_grid_picture.c composites it ----------- */
 

@@ -55,10 +55,26 @@ enum { picture_optical, picture_mwir = picture_optical + 3, picture_lwir, pictur
  * the plane's unit, by source. The planes are the same with and without it. How each figure is made and what it
  * leaves out: render/frame/render.h; how accurate the estimate is: tests/sensor/test_error_budget.c. */
 enum { error_thermal_planes = picture_radar - picture_mwir };
+
+/* What simplified plants and tables of plants change: of rays drawn over the whole picture, as the frame has plants,
+ * less the same rays in full detail. Of the radiance planes, in their unit; of the share of rays that meet a plant; of
+ * the share that meets an entity, without small targets, whose own rays meet plants themselves. 0: no such plane. */
+enum { price_cover = picture_plane_count, price_visible, price_quantities };
+typedef struct PlantPrice {
+    int    rays, met;                 /* drawn; of them those that met a plant, either way. 0: all are in full detail */
+    double cover, visible;            /* those shares in full detail */
+    double bias[price_quantities];    /* mean difference */
+    double bias_se[price_quantities]; /* its standard error, by pixels of four rays; NaN: there is one pixel */
+    double rms[price_quantities];     /* of single rays: mostly another leaf */
+    /* mean square of the difference of pixels' expected values, by products of the differences of two rays: without
+     * what rays differ by among themselves; below 0 by chance */
+    double structure_square[price_quantities];
+} PlantPrice;
+
 typedef struct ErrorBudget {
     double mean[picture_plane_count];            /* of the plane, estimated from the candidate pixels */
     double sampling[picture_plane_count];        /* rays a pixel, edges, small targets */
-    double level_of_detail[picture_plane_count]; /* posts of the ground, simplified plants. Facets of models:
+    double level_of_detail[picture_plane_count]; /* posts of the ground; plants. Facets of models:
                                                     sensor/truth/frame_error.h */
     double tables[picture_plane_count];          /* air and shading; radar: 0, it has none */
     int    probes;                               /* re-sampled pixels */
@@ -67,7 +83,8 @@ typedef struct ErrorBudget {
     const double *probe_px;                             /* [probes] */
     const float  *probe_square[error_thermal_planes];   /* [probes] mwir, lwir */
     double        refined_square[error_thermal_planes]; /* sum of theirs */
-    double        ms;                                   /* wall time */
+    PlantPrice    plants;
+    double        ms; /* wall time */
 } ErrorBudget;
 
 /* Result of a target in this view, in units of pixels: areas, which may be fractions. Where more than 40 boxes share a

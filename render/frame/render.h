@@ -30,7 +30,8 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
  *                    normals and by its displacement on the image. What is missing below the post spacing is taken
  *                    to be as much again: where hills are as high as they are long (terrain/invented/invented.c)
  *                    each halving of that spacing brings half of what is left. Shadows and what is hidden by a crest
- *                    are left out. Plants: change of the picked pixels, by the same rays, when none is simplified.
+ *                    are left out. Plants that are simplified or met in tables: difference of pixels' expected
+ *                    values from those in full detail (PlantPrice).
  *   tables           A few pixels, the bright ones first, their air computed path by path and their light in double
  *                    (air_paths_directly, optical_shade, thermal_shade), against the result of the frame's tables and
  *                    eight-wide shading. Sky irradiance comes from the table in both; errors of the atmosphere tables

@@ -56,39 +56,36 @@ Status world_need_patches(const World *world, const Snapshot *snapshot)
     return status;
 }
 
-/* The prototypes, with what even light reaches each quad where they come from the cache: *whole. */
-static Status need_plants(bool *whole, World *world, CacheKey *key, const ForestConfig *config, const char *isa,
-                          Pool *pool)
+/* The prototypes, and what their light is kept by. */
+static Status grow_plants(World *world, CacheKey *key, const ForestConfig *config, const char *isa, Pool *pool)
 {
     static const uint64_t seed = 1995; /* the prototypes are the same in every world */
     const int64_t         embree = tracer_embree(world->tracer);
-    /* bare trees let more light through to their bark; light at the finest level is found where it is traced */
-    const uint8_t with[2] = {config->leaves, config->fine};
-    void         *octets;
-    size_t        count;
-    *key = cache_key("plants of three levels");
-    cache_key_add(key, &seed, sizeof seed);
+    const uint8_t         leaves = config->leaves; /* bare trees let more light through to their bark */
+    const Status          status = plants_create(&world->plants, seed, pool);
+    if (status != STATUS_OK) return status;
+    *key = cache_key("light of prototypes");
+    plants_add_to_key(key, world->plants);
     cache_key_add(key, &embree, sizeof embree);
-    cache_key_add(key, with, sizeof with);
+    cache_key_add(key, &leaves, sizeof leaves);
     if (isa) cache_key_add(key, isa, strlen(isa));
-    *whole = false;
-    if (cache_fetch(&octets, &count, world->cache, key)) {
-        const Status status = plants_from_octets(&world->plants, octets, count);
-        free(octets);
-        *whole = status == STATUS_OK;
-        if (status != STATUS_BAD_VALUE) return status;
-    }
-    return plants_create(&world->plants, seed, pool);
+    return STATUS_OK;
 }
 
-/* Finds what even light reaches the quads, and keeps the prototypes with it. */
-static void finish_plants(World *world, const CacheKey *key, Pool *pool)
+/* What even light reaches the quads, from the cache, or found and kept there. */
+static void light_plants(World *world, CacheKey *key, Pool *pool)
 {
+    void  *octets;
+    size_t count;
+    if (cache_fetch(&octets, &count, world->cache, key)) {
+        const Status status = plants_light_from_octets(world->plants, octets, count);
+        free(octets);
+        if (status == STATUS_OK) return;
+    }
     forest_openness(world->plants, world->forest, pool);
-    const size_t count = world->cache ? plants_to_octets(NULL, world->plants) : 0;
-    void        *octets = count > 0 ? malloc(count) : NULL;
-    if (!octets) return;
-    plants_to_octets(octets, world->plants);
+    count = world->cache ? plants_light_to_octets(NULL, world->plants) : 0;
+    if (count == 0 || !(octets = malloc(count))) return;
+    plants_light_to_octets(octets, world->plants);
     cache_keep(world->cache, key, octets, count);
     free(octets);
 }
@@ -97,16 +94,15 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
 {
     char     optics[512], ground[512];
     CacheKey key = {.digest = NULL};
-    bool     whole = false;
     if (!etc_path(optics, sizeof optics, "plant_optics.csv") || !etc_path(ground, sizeof ground, "woods.csv")) {
         log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
         return STATUS_BAD_VALUE;
     }
     Status status = materials_add_plants(&world->materials, optics, ground);
-    if (status == STATUS_OK) status = need_plants(&whole, world, &key, config, isa, pool);
+    if (status == STATUS_OK) status = grow_plants(world, &key, config, isa, pool);
     if (status == STATUS_OK) status = forest_create(&world->forest, woods, world->plants, config, isa);
     if (status != STATUS_OK) return status;
-    if (!whole) finish_plants(world, &key, pool);
+    light_plants(world, &key, pool);
     const PlantsKept kept = {*key.name ? world->cache : NULL, key.name};
     status = canopy_create_kept(&world->canopy, woods, world->plants, &world->materials, config->leaves, &kept);
     if (status == STATUS_OK) status = canopy_see_pages(world->canopy, world->forest, config->leaves);

@@ -89,7 +89,7 @@ static const void *next_target(FieldAt *at, int i)
 /* rms over the image as a share of the band's mean, and in kelvin about that mean. The mean of the pseudo-radar is that
  * of a few mirrors, and no measure. */
 typedef struct BandError {
-    double share[error_sources], kelvin[error_sources], median_k, beyond_1k;
+    double share[error_sources], kelvin[error_sources], median_k, beyond_1k, plants_bias, plants_bias_se, plants_rms;
 } BandError;
 _Static_assert(sizeof(BandError) <= sizeof((FieldAt){0}).room, "it has no room");
 
@@ -98,10 +98,20 @@ static const void *error_of_band(FieldAt *at, int i)
     const FrameError *e = ((const FrameRecord *)at->of)->error;
     BandError        *out = (BandError *)at->room;
     if (!e || i == BAND_RADAR) return NULL;
-    *out = (BandError){.median_k = e->median_k[i], .beyond_1k = e->beyond_1k[i]};
+    *out = (BandError){.median_k = e->median_k[i],
+                       .beyond_1k = e->beyond_1k[i],
+                       .plants_bias = e->plants_bias[i],
+                       .plants_bias_se = e->plants_bias_se[i],
+                       .plants_rms = e->plants_rms[i]};
     memcpy(out->share, e->share[i], sizeof out->share);
     memcpy(out->kelvin, e->kelvin[i], sizeof out->kelvin);
     return field_keyed(at, band_name((Band)i), out);
+}
+
+static const void *plants_of(const void *of)
+{
+    const FrameError *e = ((const FrameRecord *)of)->error;
+    return e && e->plants.rays > 0 ? &e->plants : NULL;
 }
 
 static const void *errors_of(const void *of)
@@ -214,6 +224,32 @@ static const Field band_error_rows[] = {
      OF_ERROR(median_k), FIELD_WITHIN(0.05, 0.05), .newer = true},
     {"beyond_1k", "share of the image", "0 .. 1", "in optical", "pixels that are expected to be off by more than 1 K",
      OF_ERROR(beyond_1k), FIELD_WITHIN(0.01, 0.05), .newer = true},
+    {"plants_bias", "", "share of the band's mean", "where every plant is in full detail",
+     "how much brighter rays are in the mean than in full detail, by the rays of `plants`", OF_ERROR(plants_bias),
+     FIELD_WITHIN(0.01, 0.05), .newer = true},
+    {"plants_bias_se", "", "share of the band's mean", "likewise", "standard error of this", OF_ERROR(plants_bias_se),
+     FIELD_WITHIN(0.01, 0.2), .newer = true},
+    {"plants_rms", "", "share of the band's mean", "likewise", "rms difference of single rays: mostly another leaf",
+     OF_ERROR(plants_rms), FIELD_WITHIN(0.01, 0.2), .newer = true},
+};
+
+#define OF_PLANTS(member) FIELD_MEMBER(PlantPrice, member)
+
+static const Field plants_error_rows[] = {
+    {"rays", "", "", "", "rays that were traced both as the frame has plants and with all of them in full detail",
+     OF_PLANTS(rays), FIELD_EXACT, .newer = true},
+    {"met", "", "of `rays`", "", "those that met a plant, either way", OF_PLANTS(met), FIELD_WITHIN(20, 0.05),
+     .newer = true},
+    {"cover", "", "share of `rays`", "", "those that meet a plant, in full detail", OF_PLANTS(cover),
+     FIELD_WITHIN(0.01, 0.05), .newer = true},
+    {"cover_bias", "", "share of `rays`", "", "how many more the frame has", OF_PLANTS(bias[price_cover]),
+     FIELD_WITHIN(0.01, 0), .newer = true},
+    {"cover_bias_se", "", "share of `rays`", "", "standard error of this", OF_PLANTS(bias_se[price_cover]),
+     FIELD_WITHIN(0.01, 0), .newer = true},
+    {"visible", "", "share of `rays`", "", "those that meet an entity, but for small ones, in full detail",
+     OF_PLANTS(visible), FIELD_WITHIN(0.01, 0.05), .newer = true},
+    {"visible_bias", "", "share of `rays`", "", "how many more the frame has", OF_PLANTS(bias[price_visible]),
+     FIELD_WITHIN(0.01, 0), .newer = true},
 };
 
 static const Field radar_error_rows[] = {
@@ -240,6 +276,9 @@ static const Field error_rows[] = {
     {"BAND", "", "", "when the band was not rendered; of the pseudo-radar, whose mean is that of a few mirrors",
      "rms over the image: that of the brightest pixels, if these may be off", .item = error_of_band,
      .unless_empty = true, FIELD_OBJECT(band_error_rows)},
+    {"plants", "", "", "where every plant is in full detail (terrain.woods_tables, terrain.woods_level1_px)",
+     "what it changes that plants are met in tables or simplified, by rays drawn over the picture", .in = plants_of,
+     FIELD_OBJECT(plants_error_rows), .newer = true},
     {"range_doppler", "", "", "with radar.preset none",
      "the same of the radar's map, rms over the cells of its sum channel", .in = radar_error_of, .unless_empty = true,
      FIELD_OBJECT(radar_error_rows)},

@@ -279,6 +279,27 @@ static void add_target(PlaneSums *sums, Target *t, const PlaneOf *of)
     error_of_target(&sums->spread, t, &displaced, of->band);
 }
 
+static void plants_of_bands(FrameError *out, const ErrorBudget *budget)
+{
+    const PlantPrice *plants = &budget->plants;
+    double            bias[BAND_COUNT] = {0}, se[BAND_COUNT] = {0}, square[BAND_COUNT] = {0};
+    int               planes[BAND_COUNT] = {0};
+    out->plants = *plants;
+    for (int k = 0; k < picture_plane_count && plants->rays > 0; k++) {
+        const Band b = band_of(k);
+        if (!(budget->mean[k] > 0)) continue;
+        bias[b] += plants->bias[k] / budget->mean[k];
+        se[b] += plants->bias_se[k] / budget->mean[k]; /* as if channels went together, which they nearly do */
+        square[b] += (plants->rms[k] / budget->mean[k]) * (plants->rms[k] / budget->mean[k]);
+        planes[b]++;
+    }
+    for (int b = 0; b < BAND_COUNT; b++) {
+        out->plants_bias[b] = planes[b] > 0 ? bias[b] / planes[b] : NAN;
+        out->plants_bias_se[b] = planes[b] > 0 ? se[b] / planes[b] : NAN;
+        out->plants_rms[b] = planes[b] > 0 ? sqrt(square[b] / planes[b]) : NAN;
+    }
+}
+
 bool frame_error(FrameError *out, const FrameErrorOf *of, Target *target, int targets)
 {
     const Picture     *picture = of->picture;
@@ -289,6 +310,7 @@ bool frame_error(FrameError *out, const FrameErrorOf *of, Target *target, int ta
     int                planes[BAND_COUNT] = {0};
     if (!budget || !picture->entity || !picture->target) return false;
     for (int b = 0; b < BAND_COUNT; b++) out->median_k[b] = out->beyond_1k[b] = NAN;
+    plants_of_bands(out, budget);
     for (int k = 0; k < picture_plane_count; k++) {
         const Band         b = band_of(k);
         const PlanckTable *planck = b == BAND_MWIR ? world->planck_mwir : b == BAND_LWIR ? world->planck_lwir : NULL;

@@ -90,6 +90,10 @@ typedef enum ErrorSource {
 typedef struct FrameError {
     double share[BAND_COUNT][error_sources], kelvin[BAND_COUNT][error_sources];
     double median_k[BAND_COUNT], beyond_1k[BAND_COUNT];
+    /* PlantPrice of the picture: of its planes as shares of the band's mean; of the optical band the mean of its
+     * channels. plants.rays 0: every plant is in full detail, and these are NaN */
+    PlantPrice plants;
+    double     plants_bias[BAND_COUNT], plants_bias_se[BAND_COUNT], plants_rms[BAND_COUNT];
 } FrameError;
 
 /* The frame that is judged. */

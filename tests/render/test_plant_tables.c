@@ -198,7 +198,7 @@ static void plants_themselves(void **state)
     for (int k = 0; k < 4; k++) {
         /* far away, from where the eye is not, from below, and near */
         const double *eye = k < 2 ? far_eye : k == 2 ? below : elsewhere, *from = k == 1 ? elsewhere : eye;
-        open_stage(&by_table, &woods, true, eye, k == 2 ? 10 : 1000);
+        open_stage(&by_table, &woods, true, eye, k == 2 ? 10 : k == 3 ? 3000 : 1000);
         open_stage(&by_plant, &woods, false, eye, 1000);
         const double low[3] = {-30, -30, 0}, high[3] = {30, 30, 16};
         look(&by_table, from, low, high), look(&by_plant, from, low, high);
@@ -266,7 +266,7 @@ static void completed(void **state)
         const double     d[3] = {by_table.d[0][i], by_table.d[1][i], by_table.d[2][i]};
         double           axis[3][3], scale[2], m[3], on[3];
         met++;
-        CHECK(hit->place == hit->plant && hit->kind == p->kind && hit->organ == q->organ && hit->level == 0);
+        CHECK(hit->place == hit->plant && hit->kind == p->kind && hit->organ == q->organ && hit->level == plant_whole);
         CHECK(hit->uv[0] >= 0 && hit->uv[0] <= 1 && hit->uv[1] >= 0 && hit->uv[1] <= 1);
         plant_axes(axis, scale, p, NULL);
         double n[3], from[3];

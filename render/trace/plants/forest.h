@@ -46,9 +46,9 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
 Status forest_create_beside(Forest **out, const Forest *of, const Woods *woods);
 void   forest_destroy(Forest *forest);
 /* Fills in PlantQuad.open_up and open_down of the forest's own prototypes, by rays through them: 24 a leaf, 8 a side of
- * a branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). At plant_fine 2
- * a card and 2 a side, and all cards of a spray, and all sides of a piece of branch that face up or down alike, have
- * their mean. pool: may be NULL. */
+ * a branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). Those of
+ * patterned shapes are found when a ray first asks for them (ForestSurface): 2 a card and 2 a side; all cards of a
+ * spray, and all sides of a piece of branch, have their mean. pool: may be NULL. */
 void          forest_openness(Plants *plants, const Forest *forest, Pool *pool);
 const Woods  *forest_woods(const Forest *forest);
 const Plants *forest_plants(const Forest *forest);

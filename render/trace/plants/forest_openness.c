@@ -14,7 +14,6 @@ typedef struct Opening {
     const ShapeScene *scene;
     PlantShape       *shape;
     int               rays[PLANT_ORGANS]; /* a side */
-    bool              shared;             /* by the quads of a spray or piece of branch */
 } Opening;
 
 /* Direction k of count about n, as dense as the cosine to it; turned: about n, in turns. */
@@ -56,46 +55,65 @@ static void count_quad(int all[2], int open[2], const Opening *o, int k)
     if (q->organ == PLANT_LEAF) count_rays(all, open, o, q, k, -1);
 }
 
-static void set_open(PlantQuad *q, const int all[2], const int open[2])
+/* Shares that are free of those that go up, and down. */
+static void shares_of(float open_share[2], const int all[2], const int open[2])
 {
     const float both = (float)(open[0] + open[1]) / (float)(all[0] + all[1]); /* where all go one way */
-    q->open_up = all[0] ? (float)open[0] / (float)all[0] : both;
-    q->open_down = all[1] ? (float)open[1] / (float)all[1] : both;
+    for (int k = 0; k < 2; k++) open_share[k] = all[k] ? (float)open[k] / (float)all[k] : both;
 }
 
-/* Where quads k and l have one mean: cards of a spray. */
-static bool alike(const Opening *o, int k, int l)
-{
-    const PlantQuad *a = &o->shape->quad[k], *b = &o->shape->quad[l];
-    return k == l || (o->shared && a->organ == b->organ && a->piece == b->piece);
-}
-
-/* Spans that begin within the task's quads. */
 static void open_quads(void *user, int worker, int task)
 {
     const Opening *o = user;
-    const int      first = task * quads_a_task, end = first + quads_a_task, quads = o->shape->quads;
+    const int      first = task * quads_a_task, end = first + quads_a_task;
     (void)worker;
-    for (int k = first, next; k < end && k < quads; k = next) {
-        int all[2] = {0}, open[2] = {0};
-        for (next = k + 1; next < quads && alike(o, k, next);) next++;
-        if (k > 0 && alike(o, k - 1, k)) continue; /* another task's */
-        for (int l = k; l < next; l++) count_quad(all, open, o, l);
-        for (int l = k; l < next; l++) set_open(&o->shape->quad[l], all, open);
+    for (int k = first; k < end && k < o->shape->quads; k++) {
+        PlantQuad *q = &o->shape->quad[k];
+        int        all[2] = {0}, open[2] = {0};
+        float      share[2];
+        count_quad(all, open, o, k);
+        shares_of(share, all, open);
+        q->open_up = share[0], q->open_down = share[1];
     }
 }
 
 void forest_openness(Plants *plants, const Forest *forest, Pool *pool)
 {
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        for (int level = forest_finest(forest); level < plant_levels; level++) {
-            const bool shared = level == plant_fine && kind < plants->patterned;
-            Opening    o = {
-                   &forest->shape[kind][level], &plants->shape[kind][level], {bark_rays, leaf_rays, bark_rays}, shared};
-            if (shared) o.rays[PLANT_BARK] = fine_bark_rays, o.rays[PLANT_LEAF] = fine_leaf_rays;
+        for (int level = kind < plants->patterned ? plant_whole : forest_finest(forest); level < plant_levels;
+             level++) {
+            Opening   o = {&forest->shape[kind][level], &plants->shape[kind][level], {bark_rays, leaf_rays, bark_rays}};
             const int tasks = (o.shape->quads + quads_a_task - 1) / quads_a_task;
             if (pool) pool_run(pool, tasks, open_quads, &o);
             else
                 for (int k = 0; k < tasks; k++) open_quads(&o, 0, k);
         }
+}
+
+/* ---- patterned shapes: when a quad is first asked for ------------------------------------------- */
+
+/* Cards of a spray, and sides of a piece of branch, have one mean: they lie side by side. */
+static bool alike(const PlantShape *shape, int k, int l)
+{
+    const PlantQuad *a = &shape->quad[k], *b = &shape->quad[l];
+    return a->organ == b->organ && a->piece == b->piece;
+}
+
+void plant_openness(float open_share[2], const ShapeScene *scene, uint32_t quad)
+{
+    PlantShape *shape = (PlantShape *)(uintptr_t)scene->shape;
+    PlantQuad  *q = &shape->quad[quad];
+    __atomic_load(&q->open_up, &open_share[0], __ATOMIC_RELAXED);
+    __atomic_load(&q->open_down, &open_share[1], __ATOMIC_RELAXED);
+    if (open_share[0] >= 0 && open_share[1] >= 0) return;
+    const Opening o = {scene, shape, {fine_bark_rays, fine_leaf_rays, fine_bark_rays}};
+    int           first = (int)quad, end = (int)quad + 1, all[2] = {0}, open[2] = {0};
+    while (first > 0 && alike(shape, first - 1, first)) first--;
+    while (end < shape->quads && alike(shape, end - 1, end)) end++;
+    for (int k = first; k < end; k++) count_quad(all, open, &o, k);
+    shares_of(open_share, all, open);
+    for (int k = first; k < end; k++) { /* every thread that finds them stores the same */
+        __atomic_store(&shape->quad[k].open_up, &open_share[0], __ATOMIC_RELAXED);
+        __atomic_store(&shape->quad[k].open_down, &open_share[1], __ATOMIC_RELAXED);
+    }
 }

@@ -222,6 +222,10 @@ bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3
 /* Its first quad, and how far; o: about the middle of the prototype's box. False: none. */
 bool shape_first(uint32_t *quad, double *at_m, const ShapeScene *shape, const double o[3], const double d[3]);
 
+/* PlantQuad.open_up and open_down of a patterned shape: found when first asked for, and kept. A pure function of the
+ * prototype. Thread-safe. */
+void plant_openness(float open_share[2], const ShapeScene *shape, uint32_t quad);
+
 /* The box that a plant is within, with room for its sway, about its foot: as the list keeps it, else a wider one. */
 void plant_bounds(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant);
 /* Angle of a vector from x towards y, within 0.005 rad; 0, 0: 0. */

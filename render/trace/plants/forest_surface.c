@@ -53,11 +53,13 @@ void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHi
 {
     const PlantList  *list = forest_list_of(frame, hit);
     const Plant      *plant = &list->plant[hit->place];
-    const PlantShape *shape = frame->forest->shape[hit->kind][hit->level].shape;
-    const PlantQuad  *quad = &shape->quad[hit->quad];
+    const ShapeScene *shape = &frame->forest->shape[hit->kind][hit->level];
+    const PlantQuad  *quad = &shape->shape->quad[hit->quad];
     const double      height_m = plant_height_m(plant);
+    float             open_share[2] = {quad->open_up, quad->open_down};
     double            axis[3][3], scale[2], n[3];
     QuadPlane         plane;
+    if (shape->pattern) plant_openness(open_share, shape, hit->quad);
     plant_axes_in(axis, scale, frame, list, plant);
     const double per[2] = {1 / scale[0], 1 / scale[1]};
     plane_of(&plane, quad);
@@ -65,8 +67,8 @@ void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHi
     const double side = v3_dot(out->n_geo, d_enu) > 0 ? -1 : 1;
     v3_scale(out->n_geo, side, out->n_geo);
     *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]},
-                           .open_up = quad->open_up,
-                           .open_down = quad->open_down,
+                           .open_up = open_share[0],
+                           .open_down = open_share[1],
                            .radius_m = (float)(quad->radius * height_m),
                            .height_m = (float)height_m};
     double foot_enu[3], from[3], p[3];

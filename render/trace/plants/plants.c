@@ -251,6 +251,8 @@ static Status grow_levels(Plants *plants, int kind, uint64_t seed)
                         (double)plants->shape[kind][plant_whole].leaf_area); /* which moves the top a little */
         if (status == STATUS_OK && level == plant_whole) height = top(out);
         if (status == STATUS_OK) status = finish_shape(out, share);
+        for (int q = 0; status == STATUS_OK && q < out->quads && level == plant_fine && kind < PLANT_STANDING; q++)
+            out->quad[q].open_up = out->quad[q].open_down = -1;
     }
     return status;
 }

@@ -42,7 +42,7 @@ typedef struct PlantQuad {
     float    radius;          /* of the branch, over the plant's height; leaves 0 */
     float open_up, open_down; /* shares of even light from above, and from below, that reach the quad's front (leaves:
                                * both sides) past its own plant, weighted by the cosine, 0 .. 1; 1 until
-                               * forest_openness has found them */
+                               * forest_openness has found them; of patterned shapes -1 until a ray asks for them */
 } PlantQuad;
 
 typedef struct PlantShape {

@@ -1,7 +1,5 @@
-/* render/trace/plants/plants_kept.h: prototypes as octets, for the cache.
- *
- * The struct Plants with its pointers 0, then the patterns of leaves, then the quads of each kind and level, as they
- * lie in memory. */
+/* render/trace/plants/plants_kept.h: what even light reaches the quads of prototypes, as octets for the cache. The
+ * prototypes themselves grow in less time than they are read. */
 #ifndef RENDER_TRACE_PLANTS_PLANTS_KEPT_H
 #define RENDER_TRACE_PLANTS_PLANTS_KEPT_H
 
@@ -9,10 +7,13 @@
 
 #include "pitviper_kept.h"
 
-/* Their length, and the octets where out is not NULL. */
-size_t plants_to_octets(void *out, const Plants *plants);
-/* STATUS_BAD_VALUE: they are not such octets: a number is out of range, or not finite. */
-Status plants_from_octets(Plants **out, const void *octets, size_t count);
+/* PlantQuad.open_up and open_down of shape after shape, but for patterned ones, two floats a quad: their length, and
+ * the octets where out is not NULL. */
+size_t plants_light_to_octets(void *out, const Plants *plants);
+/* STATUS_BAD_VALUE: they are not of these shapes, or a share is not in 0 .. 1; nothing has changed then. */
+Status plants_light_from_octets(Plants *plants, const void *octets, size_t count);
+/* What the prototypes are, in a key of the cache. */
+void plants_add_to_key(CacheKey *key, const Plants *plants);
 
 /* Where what follows from prototypes is kept: beside them, by their name. */
 typedef struct PlantsKept {

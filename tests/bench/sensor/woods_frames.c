@@ -19,7 +19,10 @@ const WoodsPose woods_pose[woods_views] = {{"100 m up, 5 degrees down", 100, 5, 
 const char *const woods_detail[woods_details] = {"full detail", "tables"};
 
 /* The one place that says how the judged forest differs from full detail. */
-static ForestConfig config_of(int detail) { return (ForestConfig){.leaves = true, .fine = true, .tables = detail == 1}; }
+static ForestConfig config_of(int detail)
+{
+    return (ForestConfig){.leaves = true, .fine = true, .tables = detail == 1};
+}
 
 double woods_change_px(void) { return forest_table_px[0]; }
 
