@@ -169,6 +169,7 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
         return STATUS_UNSUPPORTED;
     }
     rtcSetDeviceErrorFunction(forest->device, forest_latch_error, forest);
+    forest->packets = rtcGetDeviceProperty(forest->device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
     for (int a = 0; a <= shape_azimuths; a++) {
         forest->azimuth[a][0] = cos(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);
         forest->azimuth[a][1] = sin(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);

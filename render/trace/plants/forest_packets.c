@@ -68,6 +68,18 @@ static bool is_frustum(const struct RTCRay8 *rays, unsigned lanes)
     return true;
 }
 
+/* One lane's ray, alone: its fields, of one word each, lie in the order of the packet's. */
+static struct RTCRay ray_of(const struct RTCRay8 *rays, int lane)
+{
+    enum { words = sizeof(struct RTCRay8) / (card_lanes * sizeof(uint32_t)) };
+    uint32_t      word[words];
+    struct RTCRay one = {.tfar = 0};
+    for (int k = 0; k < words; k++)
+        memcpy(&word[k], (const char *)rays + ((size_t)k * card_lanes + (size_t)lane) * sizeof *word, sizeof *word);
+    memcpy(&one, word, sizeof word);
+    return one;
+}
+
 /* First hits of these lanes; the others are filled in. Also from within Embree's callbacks. */
 static void intersect(Packet *p, RTCScene scene, struct RTCRayHit8 *rays, unsigned lanes)
 {
@@ -80,7 +92,15 @@ static void intersect(Packet *p, RTCScene scene, struct RTCRayHit8 *rays, unsign
     }
     p->base.flags =
         is_frustum(&rays->ray, lanes) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_NONE;
-    rtcIntersect8(valid, scene, &p->base, rays);
+    if (p->rays.frame->forest->packets) {
+        rtcIntersect8(valid, scene, &p->base, rays);
+    } else {
+        for (unsigned left = lanes; left; left &= left - 1) {
+            struct RTCRayHit one = {.ray = ray_of(&rays->ray, __builtin_ctz(left))};
+            one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(scene, &p->base, &one);
+        }
+    }
     p->base.flags = flags;
 }
 
@@ -92,7 +112,14 @@ static void occlude(Packet *p, RTCScene scene, struct RTCRay8 *rays, unsigned la
         valid[l] = lanes >> l & 1 ? -1 : 0;
         if (!valid[l]) put_none(rays, l);
     }
-    rtcOccluded8(valid, scene, &p->base, rays);
+    if (p->rays.frame->forest->packets) {
+        rtcOccluded8(valid, scene, &p->base, rays);
+        return;
+    }
+    for (unsigned left = lanes; left; left &= left - 1) {
+        struct RTCRay one = ray_of(rays, __builtin_ctz(left));
+        rtcOccluded1(scene, &p->base, &one);
+    }
 }
 
 /* The ray's origin, about that of plants. */

@@ -93,7 +93,8 @@ typedef struct ForestPages ForestPages; /* forest_pages.c */
 
 struct Forest {
     RTCDevice     device;
-    int           error; /* the first that Embree reported */
+    bool          packets; /* Embree has them, of eight rays: from AVX on */
+    int           error;   /* the first that Embree reported */
     const Woods  *woods;
     const Plants *plants;
     ForestConfig  config;
