@@ -147,19 +147,20 @@ static double stand_apart(TableStress *s, const TableStand *stand, uint32_t stre
 
 static const double share_limit = 0.02; /* beyond chance */
 
-/* A picture as coarse as they come, 60 px a radian: trees within some 20 m are met themselves, those beyond in tables.
+/* A picture as coarse as they come, 60 px a radian: trees within some 100 m are met themselves, those beyond
+ * in tables.
  */
 static double in_a_crown(void *user, bool quick)
 {
     double most = 0;
     for (int k = 0; k < 3; k++) {
-        const TableStand stand = {.count = 60,
-                                  .side_m = 64,
+        const TableStand stand = {.count = 1500,
+                                  .side_m = 300,
                                   .low_m = 8,
                                   .high_m = 25,
                                   .width = {96, 192},
                                   .lean = 40,
-                                  .eye_enu = {32, 32, (const double[]){8, 20, 60}[k]},
+                                  .eye_enu = {150, 150, (const double[]){8, 20, 60}[k]},
                                   .per_rad = 60};
         most = fmax(most, stand_apart(user, &stand, 100 + 2 * (uint32_t)k, share_limit, quick));
     }
