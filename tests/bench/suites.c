@@ -5,11 +5,11 @@
 /* Runs the stress cases of render, in order; a case that fails does not stop the rest. */
 static Status bench_stability_render(Bench *bench)
 {
-    static Status (*const part[])(Bench *) = {bench_stability_parts,  bench_stability_ground,   bench_stability_light,
-                                              bench_stability_sun,    bench_stability_air,      bench_stability_horizon,
-                                              bench_stability_gloss,  bench_stability_pictures, bench_stability_crowd,
-                                              bench_stability_plants, bench_stability_heat,     bench_stability_network,
-                                              bench_stability_radar};
+    static Status (*const part[])(Bench *) = {
+        bench_stability_parts,   bench_stability_ground,  bench_stability_light,        bench_stability_sun,
+        bench_stability_air,     bench_stability_horizon, bench_stability_gloss,        bench_stability_pictures,
+        bench_stability_crowd,   bench_stability_plants,  bench_stability_plant_tables, bench_stability_heat,
+        bench_stability_network, bench_stability_radar};
     Status failed = STATUS_OK;
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         const Status status = part[k](bench);

@@ -5,10 +5,12 @@
  * every processor has the same bits. */
 #include "render/trace/plants/forest_private.h"
 
-/* Height in the picture from which a plant is met itself. */
-static double least_real_px(const Plant *plant)
+/* Height in the picture from which a plant is met itself: in coarse pictures less, since a table has one direction for
+ * all of the plant, from which rays to its top and foot must not be far. */
+static double least_real_px(const ForestFrame *frame, const Plant *plant)
 {
-    return forest_table_px[0] + (forest_table_px[1] - forest_table_px[0]) * plant_rank(plant);
+    const double px = forest_table_px[0] + (forest_table_px[1] - forest_table_px[0]) * plant_rank(plant);
+    return smaller(px, forest_table_rad * px / forest_table_px[1] * frame->per_rad);
 }
 
 /* The coarsest level whose texels are not wider than what one ray stands for. */
@@ -27,7 +29,7 @@ void card_make(Card *card, const CardRays *rays, const PlantList *list, const Pl
     card->table = table;
     for (int c = 0; c < 3; c++) from[c] = frame->eye_enu[c] - (list->origin_enu[c] + (double)plant->p_m[c]);
     const double away_m = v3_length(from), height_m = plant_height_m(plant);
-    card->real = !table || height_m * frame->per_rad >= least_real_px(plant) * away_m;
+    card->real = !table || height_m * frame->per_rad >= least_real_px(frame, plant) * away_m;
     if (card->real) return;
     from[2] -= rays->bend_per_m * (from[0] * from[0] + from[1] * from[1]); /* all over the plant the same */
     plant_axes_in(axis, scale, frame, list, plant);
