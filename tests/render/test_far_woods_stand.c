@@ -104,13 +104,14 @@ static void open_materials(void)
     }
 }
 
-static Forest *open_forest(void)
+static Forest *open_forest_as(const ForestConfig *config)
 {
-    Forest            *forest = NULL;
-    const ForestConfig config = {.leaves = true, .level1_px = 24};
-    assert_int_equal(forest_create(&forest, &one_plant, plants, &config, "avx2"), STATUS_OK);
+    Forest *forest = NULL;
+    assert_int_equal(forest_create(&forest, &one_plant, plants, config, "avx2"), STATUS_OK);
     return forest;
 }
+
+static Forest *open_forest(void) { return open_forest_as(&(ForestConfig){.leaves = true, .level1_px = 24}); }
 
 /* Leaf area index of a stand whose prototypes have leaves of this area at a height of 1 m, and the share of pines in
  * it. */
@@ -471,6 +472,11 @@ static void woods_of_plates(void **state)
     /* not taken for those of winter */
     destroy(create(forest, cache, "plates", false));
     CHECK(cache_counters(cache).made == 2 && cache_counters(cache).fetched == 1);
+    forest_destroy(forest);
+    /* nor for those whose plants are traced at another level, since they have tables */
+    forest = open_forest_as(&(ForestConfig){.leaves = true, .level1_px = 24, .tables = true});
+    destroy(create(forest, cache, "plates", true));
+    CHECK(cache_counters(cache).made == 3 && cache_counters(cache).fetched == 1);
     forest_destroy(forest);
     cache_close(cache);
     snprintf(command, sizeof command, "rm -r %s", folder);
