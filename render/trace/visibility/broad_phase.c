@@ -372,9 +372,23 @@ static double largest_limit(const BroadRays *rays)
     return largest;
 }
 
+/* Boxes that rays are tested with, and by how much they are larger. */
+typedef struct Boxes {
+    const Box *node, *item; /* item: NULL: those of the spheres */
+    double     more_m;
+} Boxes;
+
+static double entry_of(const Slabs *slabs, const BroadRays *rays, const Box *box, double more_m)
+{
+    double low[3], high[3];
+    if (more_m == 0) return entry_m(slabs, rays, box->low, box->high);
+    for (int c = 0; c < 3; c++) low[c] = box->low[c] - more_m, high[c] = box->high[c] + more_m;
+    return entry_m(slabs, rays, low, high);
+}
+
 /* Those of a leaf that may be met, nearest first. */
-static void visit_leaf(const BroadPhase *tree, int leaf, const Slabs *slabs, BroadRays *rays, BroadVisit *visit,
-                       void *user)
+static void visit_leaf(const BroadPhase *tree, int leaf, const Boxes *boxes, const Slabs *slabs, BroadRays *rays,
+                       BroadVisit *visit, void *user)
 {
     struct {
         double entry_m;
@@ -383,7 +397,8 @@ static void visit_leaf(const BroadPhase *tree, int leaf, const Slabs *slabs, Bro
     int       count = 0;
     const int first = leaf * leaf_items;
     for (int k = first; k < first + leaf_items && k < tree->count; k++) {
-        const double at_m = entry_m(slabs, rays, tree->box[k].low, tree->box[k].high);
+        const Box    box = boxes->item ? boxes->item[k] : box_of_sphere(tree->sphere[k]);
+        const double at_m = entry_of(slabs, rays, &box, boxes->more_m);
         if (!(at_m < INFINITY)) continue;
         int to = count++;
         for (; to > 0 && met[to - 1].entry_m > at_m; to--) met[to] = met[to - 1];
@@ -393,7 +408,7 @@ static void visit_leaf(const BroadPhase *tree, int leaf, const Slabs *slabs, Bro
         if (k == 0 || met[k].entry_m <= largest_limit(rays)) visit(user, met[k].item);
 }
 
-void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit, void *user)
+static void walk(const BroadPhase *tree, const Boxes *boxes, BroadRays *rays, BroadVisit *visit, void *user)
 {
     struct {
         double entry_m;
@@ -403,21 +418,18 @@ void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit
     int   depth = 0;
     if (tree->count == 0) return;
     slabs_of(&slabs, rays);
-    stack[depth].entry_m = entry_m(&slabs, rays, tree->ray_node[1].low, tree->ray_node[1].high);
+    stack[depth].entry_m = entry_of(&slabs, rays, &boxes->node[1], boxes->more_m);
     stack[depth++].node = 1;
     while (depth > 0) {
         const double at_m = stack[--depth].entry_m;
         const int    n = stack[depth].node;
         if (!(at_m < INFINITY && at_m <= largest_limit(rays))) continue;
         if (n >= tree->leaves) {
-            visit_leaf(tree, n - tree->leaves, &slabs, rays, visit, user);
+            visit_leaf(tree, n - tree->leaves, boxes, &slabs, rays, visit, user);
             continue;
         }
         double side_m[2];
-        for (int k = 0; k < 2; k++) {
-            const Box *box = &tree->ray_node[2 * n + k];
-            side_m[k] = entry_m(&slabs, rays, box->low, box->high);
-        }
+        for (int k = 0; k < 2; k++) side_m[k] = entry_of(&slabs, rays, &boxes->node[2 * n + k], boxes->more_m);
         const int first = side_m[1] < side_m[0];
         for (int k = 0; k < 2; k++) { /* the nearer is taken from the stack first */
             const int side = k == 0 ? !first : first;
@@ -426,4 +438,16 @@ void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit
             stack[depth++].node = 2 * n + side;
         }
     }
+}
+
+void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit, void *user)
+{
+    const Boxes boxes = {.node = tree->ray_node, .item = tree->box};
+    walk(tree, &boxes, rays, visit, user);
+}
+
+void broad_phase_rays_near(const BroadPhase *tree, BroadRays *rays, double more_m, BroadVisit *visit, void *user)
+{
+    const Boxes boxes = {.node = tree->node, .more_m = more_m};
+    walk(tree, &boxes, rays, visit, user);
 }

@@ -44,5 +44,7 @@ typedef struct BroadRays {
 /* Calls visit for items that some of the rays may meet within their limits, approximately nearest first. */
 typedef void BroadVisit(void *user, int item);
 void         broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit, void *user);
+/* Likewise for items whose spheres, grown by more_m, some of the rays may meet, whatever closer boxes there are. */
+void broad_phase_rays_near(const BroadPhase *tree, BroadRays *rays, double more_m, BroadVisit *visit, void *user);
 
 #endif

@@ -29,7 +29,8 @@ static void mark_near(void *user, int index)
     for (int i = 0; i < n->count; i++) n->near[i] |= meets[i];
 }
 
-/* 1 for rays that meet the sphere of an entity, before or behind whatever else: for them no plant is simplified. */
+/* 1 for rays that meet the sphere of an entity as it is posed, before or behind whatever else: for them no plant is
+ * simplified. Those of the tree are others, and their boxes follow the rays together: the tree says only who is far. */
 static void find_near(uint8_t near[hits_capacity], const Visibility *v, const Rays *rays, int hidden)
 {
     memset(near, 0, (size_t)rays->count);
@@ -42,7 +43,7 @@ static void find_near(uint8_t near[hits_capacity], const Visibility *v, const Ra
             packet.limit_m[k] = k < some ? INFINITY : -1;
         }
         NearEntities n = {.v = v, .rays = &packet, .of = rays, .hidden = hidden, .count = some, .near = near + first};
-        broad_phase_rays(v->tree, &packet, mark_near, &n);
+        broad_phase_rays_near(v->tree, &packet, v->wider_m, mark_near, &n);
     }
 }
 
