@@ -253,12 +253,11 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
     choice_add(choices, "woods: %d trees%s%s%s, %d bushes and hedges, %.1f km about the %s (terrain.woods)", trees,
                *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m,
                config->terrain.woods_half_m >= 50 ? "aim" : "exercise");
-    if (woods->left_out > 0 && woods->far && config->terrain.woods_far_m > 0)
-        choice_add(
-            choices,
-            "woods: %d more, those beyond %.0f m of %s, and others farther out are placed when a frame needs them, "
-            "within %.0f km of the sensor (terrain.woods_trees, woods_far_m)",
-            woods->left_out, woods->reach_m, about, 1e-3 * config->terrain.woods_far_m);
+    if (woods->left_out > 0 && woods->far) /* what is chosen here holds for any distance */
+        choice_add(choices,
+                   "woods: %d more, those beyond %.0f m of %s, and others farther out stand where the sensor is nearer than "
+                   "terrain.woods_far_m (terrain.woods_trees)",
+                   woods->left_out, woods->reach_m, about);
     else if (woods->left_out > 0)
         choice_add(
             choices,
