@@ -254,10 +254,11 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
                *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m,
                config->terrain.woods_half_m >= 50 ? "aim" : "exercise");
     if (woods->left_out > 0 && woods->far) /* what is chosen here holds for any distance */
-        choice_add(choices,
-                   "woods: %d more, those beyond %.0f m of %s, and others farther out stand where the sensor is nearer than "
-                   "terrain.woods_far_m (terrain.woods_trees)",
-                   woods->left_out, woods->reach_m, about);
+        choice_add(
+            choices,
+            "woods: %d more, those beyond %.0f m of %s, and others farther out stand where the sensor is nearer than "
+            "terrain.woods_far_m (terrain.woods_trees)",
+            woods->left_out, woods->reach_m, about);
     else if (woods->left_out > 0)
         choice_add(
             choices,
