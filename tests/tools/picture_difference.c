@@ -1,7 +1,8 @@
 /* picture_difference A B [A B ...]: how the pictures of two runs of `pitviper replay --out` differ, plane by plane.
  *
- * Where more than two are given, each pair begins with a line `pair A B`: to load the image library takes longer than to
- * compare small pictures. A line a plane, over all frames that both have, so that a script can ask for any column by name:
+ * Where more than two are given, each pair begins with a line `pair A B`: to load the image library takes longer than
+ * to compare small pictures. A line a plane, over all frames that both have, so that a script can ask for any column by
+ * name:
  *
  *     plane lwir.Y frames 8 pixels 49152 changed 120 slight 50 clear 31 largest 0.81 relative 0.019 edge_px 1
  *
