@@ -17,7 +17,7 @@ from programs import Failure, Programs, Stand, tests_of
 from ran import Ran, flat, sha_of
 
 # They compare with what an earlier program made: "changed", not "wrong". Asked last.
-baselines = {'system/test_regress_suite', 'system/test_regress_suite_heat', 'system/test_mutants', 'sensor/test_plane_hash'}
+baselines = {'system/test_regress_suite', 'system/test_regress_suite_heat', 'system/test_regress_suite_radar', 'system/test_mutants', 'sensor/test_plane_hash'}
 
 # The second line: scripts that know the right answer, and take seconds; then baselines
 second_line = ['system/test_inspect_judge', 'system/test_network_judge', 'system/test_occlusion', 'system/test_exercise_judge',

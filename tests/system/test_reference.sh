@@ -29,11 +29,13 @@ free_port
 with_stream udp://127.0.0.1:$port
 printf 'x_m,y_m,z_m,hh_dbsm,vv_dbsm\n0,0,-1,20,20\n' >"$tmp/point.csv"
 printf 'entity,signature\n*,point.csv\n' >"$tmp/given.csv"
+# a longer wave and fewer pulses, of which fewer rays and samples are traced
+sed 's/^search_ku,lfm,16.5,20,512,128,/search_ku,lfm,12.5,20,128,32,/' etc/radars.csv >"$tmp/radars.csv"
 # two live nodes, each with an exercise of its own, which send what they see; one radar waits for its signatures, the other
 # has a point for every entity
 for kind in truth sensor; do
     free_port
-    radar=(--set radar.preset=search_ku --set radar.ground=false)
+    radar=(--set radar.table="$tmp/radars.csv" --set radar.preset=search_ku --set radar.ground=false)
     [ $kind = truth ] || radar+=(--set radar.given="$tmp/given.csv")
     node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 2 --no-png --bands lwir,radar --threads 1 \
         "${stream[@]}" "${radar[@]}" --latest \
@@ -61,7 +63,8 @@ PY
 answers=$!
 run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --memory "pitviper-reference-$$" --set publish.detections_port=$port --from 1366 --to 1366 --pairs target --coco \
     --set sensor.preset=staring_lwir,staring_mwir,tv --set sensor.lens_k1=-0.1 --set sensor.lateral_r=0.001 \
-    --set radar.preset=search_ku --set radar.scan_deg=4 --set radar.given="$tmp/but_one.csv"
+    --set radar.table="$tmp/radars.csv" --set radar.preset=search_ku --set radar.scan_deg=4 \
+    --set radar.given="$tmp/but_one.csv"
 check "all products" [ $code = 0 ] || cat "$tmp/stderr"
 kill $answers
 cat >"$tmp/two.yaml" <<'Y'
@@ -73,11 +76,11 @@ vehicles:
 Y
 exercise "$tmp/two.yaml" "$tmp/two.pcap"
 run replay "$tmp/two.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 --bands optical --host observer \
-    --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png \
-    --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000
+    --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
-run replay "$tmp/two.pcap" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml"
+run replay "$tmp/two.pcap" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml" \
+    --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000
 mkdir "$tmp/case"
 cat >"$tmp/case/case.yaml" <<Y
 purpose: a record

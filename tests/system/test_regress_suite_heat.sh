@@ -1,3 +1,3 @@
 #!/usr/bin/env bash
-# As test_regress_suite.sh, of the cases that are long warmed up, a radar's, or have plants. labels: two
-PITVIPER_SUITE_HEAT=yes exec bash "$(dirname "$0")/test_regress_suite.sh" "$@"
+# As test_regress_suite.sh, of the cases that are long warmed up. labels: two
+PITVIPER_SUITE_PART=heat exec bash "$(dirname "$0")/test_regress_suite.sh" "$@"

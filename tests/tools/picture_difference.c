@@ -1,6 +1,8 @@
-/* picture_difference A B: how the pictures of two runs of `pitviper replay --out` differ, plane by plane.
+/* picture_difference A B [A B ...]: how the pictures of two runs of `pitviper replay --out` differ, plane by plane.
  *
- * A line a plane, over all frames that both have, so that a script can ask for any column by name:
+ * Where more than two are given, each pair begins with a line `pair A B`: to load the image library takes longer than
+ * to compare small pictures. A line a plane, over all frames that both have, so that a script can ask for any column by
+ * name:
  *
  *     plane lwir.Y frames 8 pixels 49152 changed 120 slight 50 clear 31 largest 0.81 relative 0.019 edge_px 1
  *
@@ -191,33 +193,42 @@ static bool compare_file(Tally *tally, int *tallies, const char *const out[2], c
     return good;
 }
 
-int main(int argc, char **argv)
+static bool compare_runs(const char *const out[2])
 {
     static char  name[2][names_max][name_size];
     static Tally tally[256];
     int          tallies = 0, frames = 0;
-    if (argc != 3) {
-        fputs("usage: picture_difference A B\n", stderr);
-        return 2;
-    }
-    const char *const out[2] = {argv[1], argv[2]};
     for (int b = 0; b < band_count; b++) {
         const int a_count = list(name[0], out[0], bands[b]), b_count = list(name[1], out[1], bands[b]);
         if (a_count < 0 || b_count < 0) continue; /* a band that one of them left out */
         if (a_count != b_count || memcmp(name[0], name[1], (size_t)a_count * name_size) != 0) {
             log_error("picture_difference: %s and %s have other frames of %s", out[0], out[1], bands[b]);
-            return 2;
+            return false;
         }
         for (int i = 0; i < a_count; i++, frames++)
-            if (!compare_file(tally, &tallies, out, bands[b], name[0][i])) return 2;
+            if (!compare_file(tally, &tallies, out, bands[b], name[0][i])) return false;
     }
     if (frames == 0) {
         log_error("picture_difference: %s and %s share no frames", out[0], out[1]);
-        return 2;
+        return false;
     }
     for (int t = 0; t < tallies; t++)
         printf("plane %s frames %d pixels %ld changed %ld slight %ld clear %ld largest %g relative %g edge_px %d\n",
                tally[t].name, tally[t].frames, tally[t].pixels, tally[t].changed, tally[t].slight, tally[t].clear,
                tally[t].largest, tally[t].relative, tally[t].edge_px);
+    return true;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 3 || argc % 2 == 0) {
+        fputs("usage: picture_difference A B [A B ...]\n", stderr);
+        return 2;
+    }
+    for (int i = 1; i < argc; i += 2) {
+        const char *const out[2] = {argv[i], argv[i + 1]};
+        if (argc > 3) printf("pair %s %s\n", out[0], out[1]);
+        if (!compare_runs(out)) return 2;
+    }
     return 0;
 }
