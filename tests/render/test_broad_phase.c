@@ -216,7 +216,8 @@ static bool box_of_inner(void *user, int at, double low[3], double high[3])
 static void closer_boxes_lose_nothing_in_them(void **state)
 {
     (void)state;
-    uint64_t visited[2] = {0}, met = 0;
+    static const double grown_m = 7;
+    uint64_t            visited[2] = {0}, met = 0, near = 0;
     for (int scene = 0; scene < scenes; scene++) {
         const int   count = strew(scene);
         BroadPhase *tree = plant(count);
@@ -250,12 +251,23 @@ static void closer_boxes_lose_nothing_in_them(void **state)
                         met++;
                         CHECK(has(visits.count, item[i]));
                     }
+                visits.count = 0;
+                broad_phase_rays_near(tree, &rays, grown_m, note_visit, &visits);
+                for (int i = 0; i < count; i++) { /* by the whole spheres and more, whatever boxes there are */
+                    double m[3], across[3];
+                    v3_sub(m, sphere[i], o);
+                    const double along = v3_dot(m, d), r = sphere[i][3] + grown_m;
+                    v3_add_scaled(across, m, -along, d);
+                    if (!is_sphere(i) || !(along >= 0 && v3_dot(across, across) <= r * r && r < 1e100)) continue;
+                    near++;
+                    CHECK(has(visits.count, item[i]));
+                }
             }
         }
     }
     print_message("closer boxes: %llu visits instead of %llu\n", (unsigned long long)visited[1],
                   (unsigned long long)visited[0]);
-    CHECK(met > 100);
+    CHECK(met > 100 && near > 100);
     CHECK(visited[1] < visited[0] - visited[0] / 8); /* half of the items have boxes of a ninth of the area */
 }
 
