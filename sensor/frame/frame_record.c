@@ -277,7 +277,7 @@ static const Field error_rows[] = {
      "rms over the image: that of the brightest pixels, if these may be off", .item = error_of_band,
      .unless_empty = true, FIELD_OBJECT(band_error_rows)},
     {"plants", "", "", "where every plant is in full detail (terrain.woods_tables, terrain.woods_level1_px)",
-     "what it changes that plants are met in tables or simplified, by rays drawn over the picture", .in = plants_of,
+     "what it changes that plants are met in tables or simplified, by rays drawn over the image", .in = plants_of,
      FIELD_OBJECT(plants_error_rows), .newer = true},
     {"range_doppler", "", "", "with radar.preset none",
      "the same of the radar's map, rms over the cells of its sum channel", .in = radar_error_of, .unless_empty = true,
