@@ -6,8 +6,8 @@
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"
-few=(--only 0 --size 64x48 --no-files --set terrain.woods=on)
-all=11 # invented ground, woods, prototypes, canopy, stands of far woods, warm ground, shadows, patches of 4 models
+few=(--only 0 --size 64x48 --no-files --set terrain.woods=on --set terrain.woods_far_m=0)
+all=11 # invented ground, woods, light of prototypes, canopy, stands of far woods, warm ground, shadows, patches of 4 models
 kept() { find "$XDG_CACHE_HOME/pitviper" -name '*.kept' 2>/dev/null | wc -l; }
 # what the last run fetched, made, and found damaged
 counts() { cat "$tmp/stdout" "$tmp/stderr" | sed -n 's/.*cache: .*: \([0-9]*\) fetched, \([0-9]*\) made, \([0-9]*\) damaged.*/\1 \2 \3/p'; }
@@ -28,4 +28,13 @@ replay "$tmp/demo.pcap" "$tmp/damaged" "${few[@]}" -v
 check "damaged: same bits" same_hashes "$tmp/none" "$tmp/damaged"
 check "said of each" [ "$(counts)" = "0 $all $all" ]
 check "with what is done" grep -q "is damaged: what it held is made anew" "$tmp/stderr"
+# pages of far plants, as many as rays need
+far=(--set terrain.woods_far_m=8000)
+replay "$tmp/demo.pcap" "$tmp/far" "${few[@]}" "${far[@]}" -v
+made=$(counts)
+check "far plants: pages are kept" [ "$(wc -w <<<"$made")" = 3 -a "$(cut -d' ' -f2 <<<"$made")" -ge 4 ]
+replay "$tmp/demo.pcap" "$tmp/far_again" "${few[@]}" "${far[@]}" -v --threads 1
+check "far plants: all is fetched" [ "$(counts)" = "$(awk '{ print $1 + $2, 0, 0 }' <<<"$made")" ]
+check "far plants: same bits" same_hashes "$tmp/far" "$tmp/far_again"
+check "far plants: others" not same_hashes "$tmp/far" "$tmp/none"
 finish

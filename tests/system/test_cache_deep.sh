@@ -6,7 +6,7 @@
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"
-few=(--only 0 --size 64x48 --no-files --set terrain.woods=on)
+few=(--only 0 --size 64x48 --no-files --set terrain.woods=on --set terrain.woods_far_m=0)
 kept() { find "$XDG_CACHE_HOME/pitviper" -name '*.kept' 2>/dev/null | wc -l; }
 # what the last run fetched, made, and found damaged
 counts() { cat "$tmp/stdout" "$tmp/stderr" | sed -n 's/.*cache: .*: \([0-9]*\) fetched, \([0-9]*\) made, \([0-9]*\) damaged.*/\1 \2 \3/p'; }
