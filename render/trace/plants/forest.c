@@ -112,28 +112,33 @@ static void unite_levels(ShapeScene *hull, const ShapeScene level[plant_levels])
 
 /* ---- lists ------------------------------------------------------------------------------------ */
 
+RTCScene forest_boxes(RTCDevice device, int boxes, const BoxCalls *calls, void *user)
+{
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    RTCScene    scene = geometry ? rtcNewScene(device) : NULL;
+    if (scene) {
+        rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)boxes);
+        rtcSetGeometryUserData(geometry, user);
+        rtcSetGeometryBoundsFunction(geometry, calls->bounds, user);
+        rtcSetGeometryIntersectFunction(geometry, calls->intersect);
+        rtcSetGeometryOccludedFunction(geometry, calls->occlude);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene, geometry);
+    }
+    if (geometry) rtcReleaseGeometry(geometry);
+    return scene;
+}
+
 Status plant_list_commit(PlantList *list, const Forest *forest, bool quick)
 {
+    static const BoxCalls calls = {plant_box, plant_intersect, plant_occlude};
     if (list->count == 0) return STATUS_OK;
     if (!list->frame && !list->far && forest->config.tables &&
         !(list->bounds = malloc((size_t)list->count * sizeof *list->bounds)))
         return STATUS_NO_MEMORY;
-    const RTCDevice device = list->far ? forest->page_device : forest->device;
-    RTCGeometry     geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    if (!geometry) return STATUS_NO_MEMORY;
-    list->scene = rtcNewScene(device);
-    if (!list->scene) {
-        rtcReleaseGeometry(geometry);
-        return STATUS_NO_MEMORY;
-    }
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)((list->count + list->per_box - 1) / list->per_box));
-    rtcSetGeometryUserData(geometry, list);
-    rtcSetGeometryBoundsFunction(geometry, plant_box, list);
-    rtcSetGeometryIntersectFunction(geometry, plant_intersect);
-    rtcSetGeometryOccludedFunction(geometry, plant_occlude);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(list->scene, geometry);
-    rtcReleaseGeometry(geometry);
+    const int boxes = (list->count + list->per_box - 1) / list->per_box;
+    list->scene = forest_boxes(list->far ? forest->page_device : forest->device, boxes, &calls, list);
+    if (!list->scene) return STATUS_NO_MEMORY;
     if (quick) rtcSetSceneBuildQuality(list->scene, RTC_BUILD_QUALITY_LOW);
     rtcSetSceneFlags(list->scene, RTC_SCENE_FLAG_COMPACT);
     rtcCommitScene(list->scene);

@@ -253,21 +253,10 @@ static void bounds_of_page(const struct RTCBoundsFunctionArguments *a)
 
 static Status commit(PagesInReach *r)
 {
+    static const BoxCalls calls = {bounds_of_page, page_intersect, page_occlude};
     if (r->count == 0) return STATUS_OK;
-    RTCGeometry geometry = rtcNewGeometry(r->forest->page_device, RTC_GEOMETRY_TYPE_USER);
-    r->scene = geometry ? rtcNewScene(r->forest->page_device) : NULL;
-    if (!r->scene) {
-        if (geometry) rtcReleaseGeometry(geometry);
-        return STATUS_NO_MEMORY;
-    }
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)r->count);
-    rtcSetGeometryUserData(geometry, r);
-    rtcSetGeometryBoundsFunction(geometry, bounds_of_page, r);
-    rtcSetGeometryIntersectFunction(geometry, page_intersect);
-    rtcSetGeometryOccludedFunction(geometry, page_occlude);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(r->scene, geometry);
-    rtcReleaseGeometry(geometry);
+    r->scene = forest_boxes(r->forest->page_device, r->count, &calls, r);
+    if (!r->scene) return STATUS_NO_MEMORY;
     rtcCommitScene(r->scene);
     return forest_status(r->forest);
 }

@@ -135,6 +135,14 @@ static inline uint32_t plant_number(const PlantList *list, uint32_t place)
 /* forest.c: latches the first error of a device of the forest, and says what it was. */
 void   forest_latch_error(void *forest, enum RTCError code, const char *text);
 Status forest_status(const struct Forest *forest);
+/* Embree's callbacks of a scene of boxes. */
+typedef struct BoxCalls {
+    RTCBoundsFunction     bounds;
+    RTCIntersectFunctionN intersect;
+    RTCOccludedFunctionN  occlude;
+} BoxCalls;
+/* A scene of so many boxes of the user's, not yet committed. NULL: no memory. */
+RTCScene forest_boxes(RTCDevice device, int boxes, const BoxCalls *calls, void *user);
 /* A tree of boxes over a list. STATUS_NO_MEMORY. */
 Status plant_list_commit(PlantList *list, const struct Forest *forest, bool quick);
 void   plant_list_close(PlantList *list);

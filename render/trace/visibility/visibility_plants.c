@@ -30,7 +30,8 @@ static void mark_near(void *user, int index)
 }
 
 /* 1 for rays that meet the sphere of an entity as it is posed, before or behind whatever else: for them no plant is
- * simplified. Those of the tree are others, and their boxes follow the rays together: the tree says only who is far. */
+ * simplified. The tree's spheres are not those, and it tests a packet of rays together: its answer only leaves out
+ * entities that are farther away than any posed sphere reaches. */
 static void find_near(uint8_t near[hits_capacity], const Visibility *v, const Rays *rays, int hidden)
 {
     memset(near, 0, (size_t)rays->count);

@@ -1,7 +1,7 @@
 /* tests/bench/render/stability_plant_tables.c: plants by tables where it is hard: an eye in a crown or above it,
  * needles and hedges that lean, trees far from the origin, a million in one square, the sun at the horizon, rays that
- * are none. The reference is the plants themselves: tables meet as many, as far away; and where nothing else may
- * differ, the bits. */
+ * are none. The reference is the plants themselves, of which as many rays must meet some; the order of rays must change
+ * no bit. */
 #include "tests/bench/suites.h"
 #include "tests/bench/stress.h"
 
@@ -25,6 +25,15 @@ typedef struct TableStand {
     double origin_enu[3], eye_enu[3];
     double per_rad;
 } TableStand;
+
+/* Trees as they usually are, in 64 m x 64 m about the origin's north-east. */
+static TableStand usual_stand(int count, double per_rad, const double eye_enu[3])
+{
+    TableStand s = {
+        .count = count, .side_m = 64, .low_m = 8, .high_m = 25, .width = {96, 192}, .lean = 40, .per_rad = per_rad};
+    memcpy(s.eye_enu, eye_enu, sizeof s.eye_enu);
+    return s;
+}
 
 /* A stand by tables, and itself. It must not move. */
 typedef struct Pair {
@@ -148,20 +157,13 @@ static double stand_apart(TableStress *s, const TableStand *stand, uint32_t stre
 static const double share_limit = 0.02; /* beyond chance */
 
 /* A picture as coarse as they come, 60 px a radian: trees within some 100 m are met themselves, those beyond
- * in tables.
- */
+ * in tables. */
 static double in_a_crown(void *user, bool quick)
 {
     double most = 0;
     for (int k = 0; k < 3; k++) {
-        const TableStand stand = {.count = 1500,
-                                  .side_m = 300,
-                                  .low_m = 8,
-                                  .high_m = 25,
-                                  .width = {96, 192},
-                                  .lean = 40,
-                                  .eye_enu = {150, 150, (const double[]){8, 20, 60}[k]},
-                                  .per_rad = 60};
+        TableStand stand = usual_stand(1500, 60, (const double[3]){150, 150, (const double[]){8, 20, 60}[k]});
+        stand.side_m = 300;
         most = fmax(most, stand_apart(user, &stand, 100 + 2 * (uint32_t)k, share_limit, quick));
     }
     return most;
@@ -170,54 +172,32 @@ static double in_a_crown(void *user, bool quick)
 /* A hundredth as wide as they are usually, leaning as far as they can. */
 static double needles(void *user, bool quick)
 {
-    const TableStand stand = {.count = 400,
-                              .side_m = 64,
-                              .low_m = 2,
-                              .high_m = 25,
-                              .width = {1, 8},
-                              .lean = 127,
-                              .eye_enu = {-600, 32, 150},
-                              .per_rad = 300};
+    TableStand stand = usual_stand(400, 300, (const double[3]){-600, 32, 150});
+    stand.low_m = 2;
+    stand.lean = 127;
+    stand.width[0] = 1, stand.width[1] = 8;
     return stand_apart(user, &stand, 110, share_limit, quick);
 }
 
 static double skimmed(void *user, bool quick)
 {
-    const TableStand stand = {.count = 200,
-                              .side_m = 64,
-                              .low_m = 18,
-                              .high_m = 22,
-                              .width = {96, 192},
-                              .lean = 40,
-                              .eye_enu = {-3000, 32, 21},
-                              .per_rad = 1000};
+    TableStand stand = usual_stand(200, 1000, (const double[3]){-3000, 32, 21});
+    stand.low_m = 18;
+    stand.high_m = 22;
     return stand_apart(user, &stand, 112, share_limit, quick);
 }
 
 static double far_away(void *user, bool quick)
 {
-    const TableStand stand = {.count = 100,
-                              .side_m = 64,
-                              .low_m = 8,
-                              .high_m = 25,
-                              .width = {96, 192},
-                              .lean = 40,
-                              .origin_enu = {1.4e5, 1.4e5, -3140},
-                              .eye_enu = {1.4e5 - 1000, 1.4e5, -2900},
-                              .per_rad = 500};
+    TableStand stand = usual_stand(100, 500, (const double[3]){1.4e5 - 1000, 1.4e5, -2900});
+    memcpy(stand.origin_enu, (const double[3]){1.4e5, 1.4e5, -3140}, sizeof stand.origin_enu);
     return stand_apart(user, &stand, 114, share_limit, quick);
 }
 
 static double million(void *user, bool quick)
 {
-    const TableStand stand = {.count = 1000000,
-                              .side_m = 64,
-                              .low_m = 2,
-                              .high_m = 25,
-                              .width = {96, 192},
-                              .lean = 40,
-                              .eye_enu = {-2000, 32, 800},
-                              .per_rad = 500};
+    TableStand stand = usual_stand(1000000, 500, (const double[3]){-2000, 32, 800});
+    stand.low_m = 2;
     (void)quick; /* each block takes a second in full detail */
     return stand_apart(user, &stand, 116, share_limit, true);
 }
@@ -226,14 +206,7 @@ static double million(void *user, bool quick)
 static double low_sun(void *user, bool quick)
 {
     static const double up_deg[] = {-1, -0.001, 0, 0.001, 1, 90};
-    const TableStand    stand = {.count = 60,
-                                 .side_m = 64,
-                                 .low_m = 8,
-                                 .high_m = 25,
-                                 .width = {96, 192},
-                                 .lean = 40,
-                                 .eye_enu = {-1000, 32, 300},
-                                 .per_rad = 500};
+    TableStand          stand = usual_stand(60, 500, (const double[3]){-1000, 32, 300});
     TableStress        *s = user;
     Pair                pair;
     TableRays           rays = {0};
@@ -264,18 +237,11 @@ static double low_sun(void *user, bool quick)
 /* Rays of an eye in blocks of any size: the same bits. */
 static double company(void *user, bool quick)
 {
-    const TableStand stand = {.count = 60,
-                              .side_m = 64,
-                              .low_m = 8,
-                              .high_m = 25,
-                              .width = {96, 192},
-                              .lean = 40,
-                              .eye_enu = {-500, 32, 100},
-                              .per_rad = 300};
-    Pair             pair;
-    TableRays        rays = {0};
-    Dice             dice = {.stream = 121};
-    double           wrong = 0, tables = 0;
+    TableStand stand = usual_stand(60, 300, (const double[3]){-500, 32, 100});
+    Pair       pair;
+    TableRays  rays = {0};
+    Dice       dice = {.stream = 121};
+    double     wrong = 0, tables = 0;
     if (!pair_open(&pair, user, &stand, 120)) return INFINITY;
     for (int n = 0; n < (quick ? 2 : 30); n++) {
         rays.count = 0;
@@ -302,18 +268,11 @@ static double odd_rays(void *user, bool quick)
 {
     static const double odd[] = {0, -0.0, 1, -1, 1e-310, 1e-30, 1e30, 1e300, INFINITY, -INFINITY, NAN};
     enum { odds = sizeof odd / sizeof *odd };
-    const TableStand stand = {.count = 60,
-                              .side_m = 64,
-                              .low_m = 8,
-                              .high_m = 25,
-                              .width = {96, 192},
-                              .lean = 40,
-                              .eye_enu = {32, 32, 200},
-                              .per_rad = 100};
-    Pair             pair;
-    TableRays        rays = {0};
-    Both             both = {0};
-    Dice             dice = {.stream = 123};
+    TableStand stand = usual_stand(60, 100, (const double[3]){32, 32, 200});
+    Pair       pair;
+    TableRays  rays = {0};
+    Both       both = {0};
+    Dice       dice = {.stream = 123};
     if (!pair_open(&pair, user, &stand, 122)) return INFINITY;
     for (int n = quick ? 10 : 200; n > 0; n--) {
         look(&rays, &stand, stand.high_m, &dice);
