@@ -50,6 +50,21 @@ check "of a commit: kept" make_figures "$tmp/full.csv" "$tmp"
 check "the page says which" grep -q "(commit $(git -C "$tmp/house" rev-parse --short=8 HEAD); " "$tmp/house/$page"
 check "and the costs are those of now" cmp -s "$tmp/house/tests/cost.csv" "$tmp/house/etc/figures/cost.csv"
 check "which are of this code" make_figures --check
+
+# a suite alone: its rows, its frames' costs and a line that says so; the rest is as it was
+in_house commit -am kept
+awk -F, -v OFS=, '$1 == "woods-near" { $2 = sprintf("%.0f", 1.5 * $2) } { print }' "$tmp/house/etc/figures/cost.csv" >"$tmp/house/tests/cost.csv"
+in_house commit -am dearer
+{ grep '^#' "$tmp/full.csv"; grep '^bench,' "$tmp/full.csv"; grep '^woods,' "$tmp/full.csv" | sed '$d'; } >"$tmp/woods.csv"
+check "before, the figures of woods are older" refused 'woods-near' --check
+check "a suite alone: kept" make_figures --suite woods "$tmp/woods.csv"
+check "the page says so" grep -q "; woods alone: commit $(git -C "$tmp/house" rev-parse --short=8 HEAD), " <(tr '\n' ' ' <"$tmp/house/$page")
+others() { diff <(grep -v '^woods,\|^# woods: \|^# commit: ' "$tmp/full.csv") <(grep -v '^woods,\|^# woods: \|^# commit: ' "$tmp/house/etc/figures/bench_all.csv"); }
+check "all other rows are kept" others
+check "its own are the new ones" [ "$(grep -c '^woods,' "$tmp/house/etc/figures/bench_all.csv")" = "$(grep -c '^woods,' "$tmp/woods.csv")" ]
+check "with their costs they are of this code" make_figures --check
+in_house commit -am kept
+check "a suite that the run has not: refused" refused 'no row of the suite dis' --suite dis "$tmp/woods.csv"
 sed -i '/^dis,Entity State: decode/d' "$tmp/house/etc/figures/bench_all.csv"
 check "a row that is gone" refused 'no such row: dis|Entity State: decode' --check
 cp etc/figures/bench_all.csv "$tmp/quick.csv"
