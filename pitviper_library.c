@@ -2,8 +2,10 @@
 #include "pitviper_library.h"
 
 #include <dlfcn.h>
+#include <elf.h>
 #include <pthread.h>
 #include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <xmmintrin.h>
 
@@ -17,18 +19,48 @@ static void *find(void *handle, const LibraryFunction *function)
     return address && address != (const void *)function->jump ? address : dlsym(handle, function->name);
 }
 
+/* A module of our own may be broken itself, or left over from another build. */
+static void refuse(const Library *library, bool module, const char *what, const char *why)
+{
+    if (module) log_error("%s %s: %s; its module is broken: install the program again", library->name, what, why);
+    else if (library->package)
+        log_error("%s %s: %s; install it: apt install %s", library->name, what, why, library->package);
+    else log_error("%s %s: %s", library->name, what, why);
+}
+
+/* Of a file that was copied in part the loader would map what is not there, and reading it ends the process: the table
+ * of sections, which is the last part, has to be in it. */
+static bool whole(const char *file)
+{
+    Elf64_Ehdr  head;
+    struct stat about;
+    FILE       *in = fopen(file, "rbe");
+    const bool  there = in && fread(&head, sizeof head, 1, in) == 1 && fstat(fileno(in), &about) == 0 &&
+                       head.e_shoff <= (uint64_t)about.st_size &&
+                       (uint64_t)head.e_shnum * head.e_shentsize <= (uint64_t)about.st_size - head.e_shoff;
+    if (in) fclose(in);
+    return there;
+}
+
 static Status load(Library *library)
 {
-    const char *install = library->package ? "; install it: apt install " : "", *package = library->package;
-    void       *handle = dlopen(library->file, RTLD_LAZY | RTLD_GLOBAL);
+    const bool module = strchr(library->file, '/') != NULL;
+    if (module && !whole(library->file)) {
+        refuse(library, true, "cannot be loaded", library->file);
+        return STATUS_IO;
+    }
+    void *handle = dlopen(library->file, RTLD_LAZY | RTLD_GLOBAL);
     if (!handle) {
-        log_error("%s cannot be loaded: %s%s%s", library->name, dlerror(), install, package ? package : "");
+        const char *why = dlerror();
+        refuse(library, module && strstr(why, library->file), "cannot be loaded", why);
         return STATUS_IO;
     }
     for (int i = 0; i < library->count; i++)
         if (!find(handle, &library->function[i])) {
-            log_error("%s: %s has no %s: another version than at the build%s%s", library->name, library->file,
-                      library->function[i].name, install, package ? package : "");
+            char why[1024];
+            snprintf(why, sizeof why, "%s has no %s, it is another version than at the build", library->file,
+                     library->function[i].name);
+            refuse(library, module, "cannot be used", why);
             dlclose(handle);
             return STATUS_IO;
         }

@@ -5,6 +5,7 @@
 #include "pitviper_library.h"
 
 #include <dlfcn.h>
+#include <unistd.h>
 #include <xmmintrin.h>
 
 /* zlib is linked to nothing here */
@@ -19,6 +20,11 @@ LIBRARY(lacking, LACKING, "zlib", "libz.so.1", "zlib1g");
 void pitviper_nor_this_one(void);
 #define ABSENT(X) X(pitviper_nor_this_one)
 LIBRARY(absent, ABSENT, "Nothing", "libpitviper-nothing.so.7", "libnothing7");
+
+void pitviper_broken_function(void);
+#define BROKEN(X) X(pitviper_broken_function)
+static char broken_path[16];
+LIBRARY(broken, BROKEN, "Pictures", broken_path, "libpictures");
 
 double fast_maths_twice(double x);
 #define FAST_MATHS(X) X(fast_maths_twice)
@@ -44,6 +50,15 @@ static void what_is_missing_is_said(void **state)
     char path[512];
     CHECK(!library_module(path, sizeof path, "pitviper-nothing.so"));
     CHECK(strstr(check_said, "pitviper-nothing.so is missing") && strstr(check_said, "cmake --install"));
+
+    /* a module of our own that is not one: an error of its own, since no package brings it */
+    strcpy(broken_path, "/tmp/XXXXXX");
+    const int file = mkstemp(broken_path);
+    CHECK(file >= 0 && write(file, "\177ELF", 4) == 4 && close(file) == 0);
+    CHECK(library_load(&broken) == STATUS_IO);
+    CHECK(strstr(check_said, broken_path) && strstr(check_said, "install the program again") &&
+          !strstr(check_said, "apt"));
+    unlink(broken_path);
     log_set_sink(NULL, NULL);
 }
 

@@ -76,7 +76,7 @@ void bench_machine_read(BenchMachine *out)
 #endif
     Libraries l = {out->libraries, sizeof out->libraries, 0};
     l.used = (size_t)snprintf(l.out, l.size, "glibc %s, gdal %s", gnu_get_libc_version(), PITVIPER_GDAL_VERSION);
-    if (library_load(&assimp_library) != STATUS_OK || image_file_prepare() != STATUS_OK)
+    if (library_load(&assimp_library) != STATUS_OK || image_read_prepare() != STATUS_OK)
         log_warn("bench: a library is missing, and so are its version and what needs it");
     dl_iterate_phdr(add_library, &l);
 }

@@ -37,7 +37,8 @@ BASE_HEADERS = ('pitviper.h', 'pitviper_cache.h', 'pitviper_channels.h', 'pitvip
 LIBRARIES = (
     ('GeographicLib/*', 'terrain/*.cpp'), ('gdal*', 'terrain/elevation/reader/*'),
     ('cpl_*', 'terrain/elevation/reader/*'), ('ogr_*', 'terrain/elevation/reader/*'), ('erfa.h', 'terrain/*'),
-    ('OpenImageIO/*', 'sensor/publish/images/image_module.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
+    ('OpenImageIO/*', 'sensor/publish/images/image_module.cpp'), ('OpenEXR/*', 'sensor/publish/images/exr_module.cpp'),
+    ('png.h', 'sensor/publish/images/png_file.c'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
     ('jansson.h', 'sensor/frame/*'), ('jansson.h', 'sensor/publish/*'), ('jansson.h', 'entities/import/gltf*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep/sweep_file.c'),
 )

@@ -5,6 +5,7 @@
 #include "sensor/publish/images/image_file.h"
 
 #include <dirent.h>
+#include <pthread.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -82,6 +83,41 @@ static void fill(void)
     entity[1] = 16777217u; /* 2^24 + 1, the first integer a float lacks */
     entity[2] = 0;
     entity[3] = 2147483649u;
+}
+
+/* The first files of the program, asked for by several threads at once: each loads the modules, or waits. */
+static void *first_files(void *user)
+{
+    const int   k = *(const int *)user;
+    char        path[2][128];
+    ImageInfo   info;
+    const Plane plane[] = {plane_f32("range_m", width, height, range_m), plane_u32("entity", width, height, entity)};
+    for (int png = 0; png < 2; png++) snprintf(path[png], sizeof path[0], "%s/%d.%s", folder, k, png ? "png" : "exr");
+    return image_write_exr_as(path[0], "zip:1", plane, 2, NULL, NULL, 0) == STATUS_OK &&
+                   image_write_png(path[1], entity, width, height, 1, 16) == STATUS_OK &&
+                   image_info(&info, path[0]) == STATUS_OK && info.channels == 2 &&
+                   image_info(&info, path[1]) == STATUS_OK && info.bits == 16
+               ? user
+               : NULL;
+}
+
+static void threads_ask_first_at_once(void **state)
+{
+    enum { threads = 6 };
+    pthread_t thread[threads];
+    int       number[threads];
+    (void)state;
+    fill();
+    for (int k = 0; k < threads; k++) {
+        number[k] = k;
+        assert_int_equal(pthread_create(&thread[k], NULL, first_files, &number[k]), 0);
+    }
+    for (int k = 0; k < threads; k++) {
+        void *done;
+        assert_int_equal(pthread_join(thread[k], &done), 0);
+        assert_ptr_equal(done, &number[k]);
+    }
+    empty_folder();
 }
 
 /* Native mixed formats through the library and back: every bit, channels found by name though the file has
@@ -216,7 +252,7 @@ static void attributes_come_back(void **state)
     assert_false(image_read_string(text, sizeof text, path, "none such"));
 }
 
-/* The library puts the wall clock into DateTime by itself; two runs must give the same bytes. */
+/* Other writers put the wall clock into the file; two runs must give the same bytes. */
 static void file_bytes_repeat(void **state)
 {
     (void)state;
@@ -410,6 +446,7 @@ static void letters_are_those_of_the_font(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(threads_ask_first_at_once), /* before any other */
         cmocka_unit_test(letters_are_those_of_the_font),
         cmocka_unit_test(exr_round_trip_is_exact),
         cmocka_unit_test(octets_become_uint32),

@@ -26,7 +26,7 @@ program() {
         eval "$(sed -E "s| -o pitviper | $folder/toy.o -o $folder/pitviper |" <<<"$link")") >"$folder/said" 2>&1
     check "${folder##*/}: is built" [ -x "$folder/pitviper" ] || cat "$folder/said"
     check "${folder##*/}: no warning" not grep -q warning "$folder/said"
-    for file in pitviper-images.so pitviper-rasters; do ln -s "$build/$file" "$folder/"; done
+    for file in pitviper-exr.so pitviper-images.so pitviper-rasters; do ln -s "$build/$file" "$folder/"; done
 }
 # plane NAME ROW [FUNCTION]: with the row behind that of ranges
 plane() {

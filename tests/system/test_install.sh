@@ -6,7 +6,7 @@ real=$(realpath "$build")
 needs "$build/pitviper.1 (target manual; not in sanitized builds)" test -f "$build/pitviper.1"
 judges man
 cmake --install "$build" --prefix "$tmp/prefix" >"$tmp/said" 2>&1 || fail "cmake --install: $(tail -n 1 "$tmp/said")"
-for file in bin/pitviper bin/pitviper-bench lib/pitviper/pitviper-images.so lib/pitviper/pitviper-rasters share/man/man1/pitviper.1 share/pitviper/catalog.csv share/pitviper/ADDING.md \
+for file in bin/pitviper bin/pitviper-bench lib/pitviper/pitviper-exr.so lib/pitviper/pitviper-images.so lib/pitviper/pitviper-rasters share/man/man1/pitviper.1 share/pitviper/catalog.csv share/pitviper/ADDING.md \
             include/pitviper_memory.h share/pitviper/examples/read_memory.c share/pitviper/examples/read_memory.py \
             share/pitviper/README.md share/pitviper/LICENSE share/pitviper/scenarios/demo.yaml share/pitviper/atmosphere/us1976/visibilities.csv; do
     check "installed: $file" [ -f "$tmp/prefix/$file" ]
@@ -26,7 +26,7 @@ check "man -M" eval 'man -M "$tmp/prefix/share/man" pitviper 2>/dev/null | grep 
 check "man -l" eval 'man -l "$build/pitviper.1" 2>/dev/null | grep -q "sensor simulation"'
 # what takes 0.2 s to load is not loaded by every command: pitviper_library.h
 ldd "$tmp/prefix/bin/pitviper" >"$tmp/libraries"
-check "libraries loaded on demand are not linked" not grep -E 'OpenImageIO|gdal|libav|assimp' "$tmp/libraries"
+check "libraries loaded on demand are not linked" not grep -E 'OpenImageIO|OpenEXR|gdal|libav|assimp' "$tmp/libraries"
 check "others are" grep -q embree "$tmp/libraries"
 # uninstalled as etc/reference/commands.md says
 xargs rm -f <"$real/install_manifest.txt"

@@ -17,7 +17,8 @@ hidden() {
 cd "$tmp" || exit 1
 hidden "$tmp/prefix/bin/pitviper" exercise demo -o "$tmp/demo.pcap"
 check "the installed one: exercise demo" [ $code = 0 -a -s "$tmp/demo.pcap" ]
-hidden "$tmp/prefix/bin/pitviper" -v replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out" --size 64x48 --only 0,1 --threads 1 \
+ln -s "$tmp/prefix/bin/pitviper" "$tmp/link" # modules and tables are found beside what it leads to
+hidden "$tmp/link" -v replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out" --size 64x48 --only 0,1 --threads 1 \
     --set terrain.woods=on --set terrain.woods_half_m=100 --set terrain.woods_trees=200
 check "the installed one: replay" [ $code = 0 -a "$(frames "$tmp/out")" = 2 ]
 check "its tables are its own" eval 'grep -q "table: $tmp/prefix/bin/../share\|table: $tmp/prefix/share/pitviper/catalog.csv" "$tmp/stderr"'
@@ -39,11 +40,19 @@ check "alone: neither do the defaults" [ $code = 0 ]
 cp -r "$tmp/prefix/share" "$tmp/alone/"
 hidden "$tmp/alone/bin/pitviper" replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out2" --size 64x48 --only 0 --threads 1
 check "alone, share put beside it, without its module: exit code" [ $code = 1 ]
-check "alone: the module is named, and what to install" complained 'module pitviper-images.so is missing: looked .*copy lib/pitviper'
+check "alone: the module is named, and what to install" complained 'module pitviper-exr.so is missing: looked .*copy lib/pitviper'
 touch "$tmp/a.tif"
 hidden "$tmp/alone/bin/pitviper" terrain import "$tmp/a.tif" -o "$tmp/a.store"
 check "alone: what reads rasters is named" complained 'module pitviper-rasters is missing: looked .*copy lib/pitviper'
 cp -r "$tmp/prefix/lib" "$tmp/alone/"
+for octets in 100 10000; do # a module of which only a part was copied
+    head -c $octets "$tmp/prefix/lib/pitviper/pitviper-exr.so" >"$tmp/alone/lib/pitviper/pitviper-exr.so"
+    hidden "$tmp/alone/bin/pitviper" replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out3" --size 64x48 --only 0 --threads 1
+    check "a module of $octets octets: exit code" [ $code = 1 ]
+    check "a module of $octets octets: is named, with what to do" complained 'pitviper-exr.so.* its module is broken: install the program again'
+    check "a module of $octets octets: no picture is begun" [ -z "$(find "$tmp/out3" -type f 2>/dev/null)" ]
+done
+cp "$tmp/prefix/lib/pitviper/pitviper-exr.so" "$tmp/alone/lib/pitviper/"
 hidden "$tmp/alone/bin/pitviper" terrain import "$tmp/a.tif" -o "$tmp/a.store"
 check "with lib beside it, it is found" complained 'not recognized as a supported file format'
 hidden "$tmp/alone/bin/pitviper" replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out2" --overwrite --size 64x48 --only 0 --threads 1

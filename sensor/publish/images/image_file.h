@@ -1,4 +1,5 @@
-/* sensor/publish/images/image_file.h: image files, through OpenImageIO (image_module.cpp, the only file that uses it).
+/* sensor/publish/images/image_file.h: image files: written through OpenEXR (exr_module.cpp) and libpng (png_file.c),
+ * read through OpenImageIO (image_module.cpp); no other file uses these libraries.
  *
  * A file appears complete or not at all: it is written chunk by chunk as `PATH.part` and renamed. Every failure is
  * one log line with path and reason, and a Status; nothing of a failed file is left behind. Thread-safe for
@@ -41,13 +42,15 @@ static inline ImageAttribute image_double(const char *name, double number)
 
 enum { image_max_planes = 64, image_max_size_px = 32768 };
 
-/* Loads OpenImageIO, which takes some 0.1 s. Every function below does it by itself; a command that will write files
- * calls it on the main thread, before its pool starts. STATUS_IO, logged with what to install. */
+/* Loads what writing needs (some ms), and what reading and letters need (OpenImageIO, some 0.15 s). Every function
+ * below does it by itself; a command that will call them from a pool prepares on the main thread, before the pool
+ * starts. STATUS_IO, logged with what to install. */
 Status image_file_prepare(void);
+Status image_read_prepare(void);
 
 /* EXR, one channel per plane, float32 or uint32 each, bit for bit (a uint32 never passes through a float), in a
  * compression by name (`none`, `rle`, `zips`, `zip:1`, `piz`, ...; frame_files.c has measurements). date_time:
- * `YYYY:MM:DD HH:MM:SS`, stored as DateTime, so that the library does not put the wall clock there; NULL: 1970:01:01
+ * `YYYY:MM:DD HH:MM:SS`, stored as capDate, which OpenImageIO calls DateTime; never the wall clock; NULL: 1970:01:01
  * 00:00:00. STATUS_BAD_VALUE: no planes or too many, sizes that differ, PLANE_F64, a name that is empty or used
  * twice. STATUS_IO: the disk or the library refused. */
 Status image_write_exr_as(const char *path, const char *compression, const Plane *plane, int plane_count,

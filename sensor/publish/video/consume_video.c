@@ -3,6 +3,7 @@
 
 #include "sensor/frame/frame_display.h"
 #include "sensor/publish/files/frame_files.h"
+#include "sensor/publish/images/image_file.h"
 #include "sensor/publish/images/picture_text.h"
 #include "sensor/publish/video/video_encoder_private.h"
 #include "sensor/publish/video/video_output_private.h"
@@ -286,7 +287,12 @@ static Status begin(Consumer *consumer)
     return frame_files_folder(path);
 }
 
-Status video_prepare(const Config *config) { return video_wanted(config) ? library_load(&video_library) : STATUS_OK; }
+Status video_prepare(const Config *config)
+{
+    if (!video_wanted(config)) return STATUS_OK;
+    const Status status = config->publish.video_labels == VIDEO_LABELS_OFF ? STATUS_OK : image_read_prepare();
+    return status == STATUS_OK ? library_load(&video_library) : status;
+}
 
 Status consume_video(Consumer **out, const VideoOf *of)
 {

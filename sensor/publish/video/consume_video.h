@@ -27,8 +27,8 @@ typedef struct VideoOf {
     Detections     *detections; /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
 } VideoOf;
 
-/* Loads FFmpeg's libraries where a video or a stream is configured; a command that may publish one calls it on the main
- * thread, before its pool starts. STATUS_IO, logged with what to install. */
+/* Loads FFmpeg's libraries where a video or a stream is configured, and what the letters of its labels need; a command
+ * that may publish one calls it on the main thread, before its pool starts. STATUS_IO, logged with what to install. */
 Status video_prepare(const Config *config);
 
 /* STATUS_UNSUPPORTED, logged: the program was built without FFmpeg's libraries, or several hosts would share a file or

@@ -331,7 +331,7 @@ static bool run_all(Suite *s)
                        .allow_missing = s->o.allow_missing,
                        .why = s->o.why};
     s->begun_s = wall_clock_s();
-    if (image_file_prepare() != STATUS_OK) return false; /* baselines are images */
+    if (image_file_prepare() != STATUS_OK || image_read_prepare() != STATUS_OK) return false; /* baselines are images */
     if (pool_create(&pool, jobs) != STATUS_OK) {
         log_error("regress: cannot start %d threads; give fewer --jobs", jobs);
         return false;
