@@ -104,6 +104,7 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
     if (status != STATUS_OK) return status;
     light_plants(world, &key, pool);
     const PlantsKept kept = {*key.name ? world->cache : NULL, key.name};
+    forest_keep(world->forest, &kept);
     status = canopy_create_kept(&world->canopy, woods, world->plants, &world->materials, config->leaves, &kept);
     if (status == STATUS_OK) status = canopy_see_pages(world->canopy, world->forest, config->leaves);
     if (status != STATUS_OK) return status;

@@ -220,6 +220,7 @@ void forest_destroy(Forest *forest)
 {
     if (!forest) return;
     plant_list_close(&forest->standing);
+    if (!forest->borrows) forest_kept_destroy(forest);
     forest_pages_destroy(forest);
     for (int kind = 0; kind < PLANT_STANDING && !forest->borrows; kind++) plant_table_destroy(forest->table[kind]);
     for (int kind = 0; kind < PLANT_KINDS && !forest->borrows; kind++)
@@ -258,6 +259,7 @@ void forest_frame_close(ForestFrame *frame)
 {
     low_plants_close(frame);
     far_pages_close(frame);
+    if (frame->forest) forest_kept_after_frame(frame->forest);
 }
 
 /* The whole crown leans with the wind's pressure, which grows with its square, and swings about that at its natural
