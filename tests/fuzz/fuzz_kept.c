@@ -50,7 +50,7 @@ static void values(Kept *kept, void *user, int kind)
     if (kind == 1) far_stand_kept_values(kept, &(StandKept){a->stand, rows});
     if (kind == 2) invented_kept_values(kept, &a->ground);
     if (kind == 3) patches_kept_values(kept, &(PatchesKept){&a->patches, &model});
-    if (kind == 4) kept_texels_values(kept, &(KeptTexels){a->texel, 1, texels_quads});
+    if (kind == 4) kept_texels_values(kept, &(KeptTexels){a->texel, 1, texels_quads, 0});
     if (kind == 5) kept_light_values(kept, &(KeptLight){a->share, light_groups});
 }
 static void              canopy(Kept *kept, void *user) { values(kept, user, 0); }

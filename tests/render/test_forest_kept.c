@@ -80,10 +80,10 @@ static void octets_of_texels(void **state)
     size_t          count = 0;
     (void)state;
     from[table_side + 3] = hit, from[table_side + 64] = table_nothing;
-    char *got = kept_write(&count, kept_texels_values, &(KeptTexels){from, 1, quads});
+    char *got = kept_write(&count, kept_texels_values, &(KeptTexels){from, 1, quads, 0});
     CHECK(got && count == octets);
     CHECK(memcmp(got, word, sizeof word) == 0 && memcmp(got + sizeof word, &hit, sizeof hit) == 0);
-    CHECK(kept_read(kept_texels_values, &(KeptTexels){to, 1, quads}, got, count));
+    CHECK(kept_read(kept_texels_values, &(KeptTexels){to, 1, quads, 0}, got, count));
     CHECK(memcmp(from, to, sizeof from) == 0);
     free(got);
 }
@@ -94,7 +94,7 @@ static bool reads(const uint64_t word[6], uint32_t hit, size_t count)
     char            octets[6 * 8 + 8] = {0};
     memset(to, 0, sizeof to);
     memcpy(octets, word, 6 * sizeof *word), memcpy(octets + 48, &hit, sizeof hit);
-    return kept_read(kept_texels_values, &(KeptTexels){to, 1, 5}, octets, count);
+    return kept_read(kept_texels_values, &(KeptTexels){to, 1, 5, 0}, octets, count);
 }
 
 static void wrong_texels(void **state)
@@ -103,7 +103,8 @@ static void wrong_texels(void **state)
     const uint64_t word[6] = {2, 0, 8, 1, 8, 0};
     const uint32_t depth = (uint32_t)table_depth_steps << table_quad_bits, first = 2, last = 6;
     (void)state;
-    CHECK(reads(word, depth | first, whole) && reads(word, (uint32_t)-table_depth_steps << table_quad_bits | last, whole));
+    CHECK(reads(word, depth | first, whole) &&
+          reads(word, (uint32_t)-table_depth_steps << table_quad_bits | last, whole));
     for (size_t count = 0; count < whole; count++) CHECK(!reads(word, depth | first, count));
     CHECK(!reads(word, depth | first, whole + 1));
     CHECK(!reads(word, depth | (last + 1), whole) && !reads(word, depth | table_quad_mask, whole)); /* no such quad */
@@ -203,7 +204,8 @@ static void written_when_new(void **state)
         CHECK(made() == before + (few ? 0 : 1));
     }
     Forest *f = open_forest("new");
-    trace_way(f, PLANT_PINE, first_way), trace_way(f, PLANT_PINE, first_way + 1), trace_way(f, PLANT_PINE, first_way + 2);
+    trace_way(f, PLANT_PINE, first_way), trace_way(f, PLANT_PINE, first_way + 1),
+        trace_way(f, PLANT_PINE, first_way + 2);
     forest_kept_after_frame(f); /* 3 x 16384 - 1024, of 65536 */
     CHECK(made() == before + 1);
     trace_way(f, PLANT_PINE, first_way + 3), trace_way(f, PLANT_PINE, first_way + 4);
@@ -229,8 +231,8 @@ static void light_up(float share[hand_quads][2], const Forest *forest, PlantKind
 
 static void light_of_quads(void **state)
 {
-    static float    share[2][hand_quads][2];
-    const uint64_t  before = made(), from = fetched();
+    static float     share[2][hand_quads][2];
+    const uint64_t   before = made(), from = fetched();
     const PlantQuad *quad = hand_plants.shape[PLANT_PINE][plant_fine].quad;
     (void)state;
     Forest *none = open_forest("");
@@ -253,13 +255,14 @@ static void light_of_quads(void **state)
 
 /* ---- files --------------------------------------------------------------------------------------- */
 
-/* Changes the last octets of the one entry that was written last, and its sum with them. Its layout: pitviper_cache.h. */
+/* Changes the last octets of the one entry that was written last, and its sum with them. Its layout: pitviper_cache.h.
+ */
 static void spoil(const char *path)
 {
     static char octets[1 << 20];
     enum { sum = 64 };
-    char        digits[sha256_text_size];
-    FILE       *file = fopen(path, "rb");
+    char  digits[sha256_text_size];
+    FILE *file = fopen(path, "rb");
     assert_non_null(file);
     const size_t count = fread(octets, 1, sizeof octets, file);
     fclose(file);
@@ -311,7 +314,8 @@ static void trace_some(void *user, int worker, int task)
     Forest *forest = user;
     (void)worker;
     for (int place = task * 64; place < (task + 1) * 64; place++)
-        for (int k = 0; k < 4; k++) plant_table_trace(forest->table[PLANT_PINE], (row + k) * table_azimuths, k % 2, place / (k % 2 ? 4 : 1));
+        for (int k = 0; k < 4; k++)
+            plant_table_trace(forest->table[PLANT_PINE], (row + k) * table_azimuths, k % 2, place / (k % 2 ? 4 : 1));
 }
 
 /* Threads that ask while an entry is taken, half of whose values are there, and one of whose is not. */
@@ -336,8 +340,8 @@ static void by_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(octets_of_texels), cmocka_unit_test(wrong_texels), cmocka_unit_test(wrong_light),
-        cmocka_unit_test(a_second_run),     cmocka_unit_test(coarse_texels), cmocka_unit_test(two_at_once),
+        cmocka_unit_test(octets_of_texels), cmocka_unit_test(wrong_texels),   cmocka_unit_test(wrong_light),
+        cmocka_unit_test(a_second_run),     cmocka_unit_test(coarse_texels),  cmocka_unit_test(two_at_once),
         cmocka_unit_test(written_when_new), cmocka_unit_test(light_of_quads), cmocka_unit_test(wrong_entry),
         cmocka_unit_test(by_threads),
     };

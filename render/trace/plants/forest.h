@@ -49,8 +49,9 @@ void   forest_destroy(Forest *forest);
 /* Fills in PlantQuad.open_up and open_down of the forest's own prototypes, by rays through them: 24 a leaf, 8 a side of
  * a branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). Those of
  * patterned shapes are found when a ray first asks for them (ForestSurface): 2 a card and 2 a side; all cards of a
- * spray, and all sides of a piece of branch, have their mean. pool: may be NULL. */
-void forest_openness(Plants *plants, const Forest *forest, Pool *pool);
+ * spray, and all sides of a piece of branch, have their mean. pool: may be NULL. STATUS_NO_MEMORY: some are as before.
+ */
+Status forest_openness(Plants *plants, const Forest *forest, Pool *pool);
 /* From here on what rays find of the prototypes, texels of tables and the light of patterned shapes, is taken from
  * kept->cache when a ray first needs it, and written there when the forest is destroyed, and after a frame where much
  * of it is new; cache NULL: not. kept->name: of these prototypes; the cache outlives the forest. Before the first ray.

@@ -29,7 +29,8 @@ static bool is_hit(uint32_t texel, int quads)
 
 static inline bool has(const uint64_t set[2], int k) { return set[k >> 6] >> (k & 63) & 1; }
 
-static void pass_line(Kept *kept, uint32_t line[table_side], int quads)
+/* Returns how many texels are known. line NULL: what is read is only checked. */
+static uint32_t pass_line(Kept *kept, uint32_t *line, int quads)
 {
     uint64_t known[2] = {0}, met[2] = {0};
     uint32_t hit[table_side];
@@ -49,9 +50,11 @@ static void pass_line(Kept *kept, uint32_t line[table_side], int quads)
     kept_pass(kept, hit, (size_t)hits * sizeof *hit);
     for (int x = 0, k = 0; x < table_side && kept_is_read(kept) && kept->good; x++) {
         if (!has(known, x)) continue;
-        line[x] = has(met, x) ? hit[k++] : table_nothing;
-        kept_check(kept, line[x] == table_nothing || is_hit(line[x], quads));
+        const uint32_t texel = has(met, x) ? hit[k++] : table_nothing;
+        kept_check(kept, texel == table_nothing || is_hit(texel, quads));
+        if (line) __atomic_store_n(&line[x], texel, __ATOMIC_RELAXED);
     }
+    return (uint32_t)(__builtin_popcountll(known[0]) + __builtin_popcountll(known[1]));
 }
 
 static bool is_blank(const uint32_t line[table_side])
@@ -63,15 +66,15 @@ static bool is_blank(const uint32_t line[table_side])
 
 void kept_texels_values(Kept *kept, void *user)
 {
-    const KeptTexels *t = user;
+    KeptTexels *t = user;
     for (int way = 0; way < t->ways && kept->good; way++) {
-        uint32_t *texel = t->texel + (size_t)way * way_texels;
+        uint32_t *texel = t->texel ? t->texel + (size_t)way * way_texels : NULL;
         uint64_t  lines[2] = {0};
         for (int y = 0; y < table_side && !kept_is_read(kept); y++)
             if (!is_blank(texel + y * table_side)) lines[y >> 6] |= UINT64_C(1) << (y & 63);
         kept_pass(kept, lines, sizeof lines);
         for (int y = 0; y < table_side && kept->good; y++)
-            if (has(lines, y)) pass_line(kept, texel + y * table_side, t->quads);
+            if (has(lines, y)) t->known += pass_line(kept, texel ? texel + y * table_side : NULL, t->quads);
     }
 }
 
@@ -135,7 +138,7 @@ static bool open_values(Values *v, const ShapeKept *k, int part)
         v->light.share = malloc(((size_t)v->light.groups + 1) * sizeof *v->light.share);
         if (!v->light.share) return false;
     } else {
-        v->texels = (KeptTexels){malloc(row_texels * sizeof(uint32_t)), table_azimuths, shape->quads};
+        v->texels = (KeptTexels){malloc(row_texels * sizeof(uint32_t)), table_azimuths, k->shape->quads, 0};
         if (!v->texels.texel) return false;
     }
     clear(v);
@@ -143,18 +146,6 @@ static bool open_values(Values *v, const ShapeKept *k, int part)
 }
 
 static uint32_t *row_of(const ShapeKept *k, int row) { return k->table->level[0] + (size_t)row * row_texels; }
-
-/* Puts texels into the scene's table. Returns how many there are. */
-static uint32_t put_texels(uint32_t *row, const KeptTexels *t)
-{
-    uint32_t known = 0;
-    for (int at = 0; at < row_texels; at++) {
-        if (t->texel[at] == table_unset) continue;
-        __atomic_store_n(&row[at], t->texel[at], __ATOMIC_RELAXED);
-        known++;
-    }
-    return known;
-}
 
 /* Adds those of the scene. Returns how many these are. */
 static uint32_t add_texels(KeptTexels *t, const uint32_t *row)
@@ -193,12 +184,6 @@ static uint32_t add_light(KeptLight *l, const PlantShape *shape)
     return known;
 }
 
-static uint32_t put(const ShapeKept *k, int part, const Values *v)
-{
-    if (part == kept_light) return put_light((PlantShape *)(uintptr_t)k->shape->shape, &v->light);
-    return put_texels(row_of(k, part), &v->texels);
-}
-
 static uint32_t add(Values *v, const ShapeKept *k, int part)
 {
     return part == kept_light ? add_light(&v->light, k->shape->shape) : add_texels(&v->texels, row_of(k, part));
@@ -215,15 +200,43 @@ static CacheKey key_of(const ShapeKept *k, int part)
     return key;
 }
 
+static void say_wrong(const ShapeKept *k, int part)
+{
+    log_warn("forest: an entry of the cache with the %s of the %s is whole but has values that the plant cannot have: "
+             "they are found anew",
+             part == kept_light ? "light" : "hit table", plant_name((PlantKind)k->kind));
+}
+
+/* Texels go straight into the table, once all are known to be good. */
+static void take_texels(ShapeKept *k, int part, const void *octets, size_t count)
+{
+    KeptTexels checked = {NULL, table_azimuths, k->shape->quads, 0}, row = checked;
+    row.texel = row_of(k, part);
+    if (kept_read(kept_texels_values, &checked, octets, count) && kept_read(kept_texels_values, &row, octets, count))
+        __atomic_store_n(&k->part[part].known, row.known, __ATOMIC_RELAXED);
+    else say_wrong(k, part);
+}
+
+static void take_light(ShapeKept *k, const void *octets, size_t count)
+{
+    PlantShape *shape = (PlantShape *)(uintptr_t)k->shape->shape; /* its light alone changes */
+    Values      v;
+    const bool  open = open_values(&v, k, kept_light);
+    if (open && kept_read(v.pass, v.user, octets, count))
+        __atomic_store_n(&k->part[kept_light].known, put_light(shape, &v.light), __ATOMIC_RELAXED);
+    else if (open) say_wrong(k, kept_light);
+    close_values(&v);
+}
+
 static void take(ShapeKept *k, int part)
 {
-    Values v;
-    if (open_values(&v, k, part)) {
-        CacheKey key = key_of(k, part);
-        if (kept_fetch(v.pass, v.user, k->all->cache, &key))
-            __atomic_store_n(&k->part[part].known, put(k, part, &v), __ATOMIC_RELAXED);
-    }
-    close_values(&v);
+    CacheKey key = key_of(k, part);
+    void    *octets;
+    size_t   count;
+    if (!cache_fetch(&octets, &count, k->all->cache, &key)) return;
+    if (part == kept_light) take_light(k, octets, count);
+    else take_texels(k, part, octets, count);
+    free(octets);
 }
 
 void shape_kept_take(ShapeKept *k, int part)

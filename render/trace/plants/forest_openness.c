@@ -77,17 +77,30 @@ static void open_quads(void *user, int worker, int task)
     }
 }
 
-void forest_openness(Plants *plants, const Forest *forest, Pool *pool)
+/* Of all quads of a shape, whose scene is built for that alone where rays do not need it otherwise. */
+static Status open_shape(PlantShape *shape, const ShapeScene *traced, const Forest *forest, Pool *pool)
 {
+    ShapeScene   own = *traced;
+    const Status status = own.scene ? STATUS_OK : shape_scene_build(&own, forest);
+    if (status == STATUS_OK) {
+        Opening   o = {&own, shape, {bark_rays, leaf_rays, bark_rays}};
+        const int tasks = (shape->quads + quads_a_task - 1) / quads_a_task;
+        if (pool) pool_run(pool, tasks, open_quads, &o);
+        else
+            for (int k = 0; k < tasks; k++) open_quads(&o, 0, k);
+    }
+    if (own.scene && !traced->scene) rtcReleaseScene(own.scene);
+    return status;
+}
+
+Status forest_openness(Plants *plants, const Forest *forest, Pool *pool)
+{
+    Status status = STATUS_OK;
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        for (int level = kind < plants->patterned ? plant_whole : forest_finest(forest); level < plant_levels;
-             level++) {
-            Opening   o = {&forest->shape[kind][level], &plants->shape[kind][level], {bark_rays, leaf_rays, bark_rays}};
-            const int tasks = (o.shape->quads + quads_a_task - 1) / quads_a_task;
-            if (pool) pool_run(pool, tasks, open_quads, &o);
-            else
-                for (int k = 0; k < tasks; k++) open_quads(&o, 0, k);
-        }
+        for (int level = kind < plants->patterned ? plant_whole : forest_finest(forest);
+             level < plant_levels && status == STATUS_OK; level++)
+            status = open_shape(&plants->shape[kind][level], &forest->shape[kind][level], forest, pool);
+    return status;
 }
 
 /* ---- patterned shapes: when a quad is first asked for ------------------------------------------- */

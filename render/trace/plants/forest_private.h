@@ -14,8 +14,9 @@ enum { shape_azimuths = 64 };
 
 /* A prototype, ready to be traced: its quads about their middle, and Embree's tree over them. */
 typedef struct ShapeScene {
-    RTCScene           scene;
+    RTCScene           scene; /* NULL: not built */
     const PlantShape  *shape;
+    int                quads;              /* of it that are traced */
     const LeafOutline *outline;            /* [plant_outlines] */
     const LeafPattern *pattern;            /* [plant_outlines]; NULL: leaves have outlines */
     double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
@@ -101,8 +102,9 @@ typedef struct ShapeKept {
 
 /* Values of an entry, all at once: those that are not known are table_unset, or -1. */
 typedef struct KeptTexels {
-    uint32_t *texel; /* [ways][table_side][table_side] of the finest level */
+    uint32_t *texel; /* [ways][table_side][table_side] of the finest level; NULL: what is read is only checked */
     int       ways, quads;
+    uint32_t  known; /* counts those that are passed */
 } KeptTexels;
 typedef struct KeptLight {
     float (*share)[2]; /* PlantQuad.open_up and open_down, [groups] */
@@ -193,6 +195,8 @@ static inline uint32_t plant_number(const PlantList *list, uint32_t place)
 /* forest.c: latches the first error of a device of the forest, and says what it was. */
 void   forest_latch_error(void *forest, enum RTCError code, const char *text);
 Status forest_status(const struct Forest *forest);
+/* Builds the scene of a shape. */
+Status shape_scene_build(ShapeScene *shape, const struct Forest *forest);
 /* Embree's callbacks of a scene of boxes. */
 typedef struct BoxCalls {
     RTCBoundsFunction     bounds;
