@@ -65,7 +65,7 @@ static Status grow_plants(World *world, CacheKey *key, const ForestConfig *confi
     const Status          status = plants_create(&world->plants, seed, pool);
     if (status != STATUS_OK) return status;
     *key = cache_key("light of prototypes");
-    plants_add_to_key(key, world->plants);
+    cache_key_add(key, &seed, sizeof seed); /* by which they grow, in this program */
     cache_key_add(key, &embree, sizeof embree);
     cache_key_add(key, &leaves, sizeof leaves);
     if (isa) cache_key_add(key, isa, strlen(isa));
@@ -73,21 +73,23 @@ static Status grow_plants(World *world, CacheKey *key, const ForestConfig *confi
 }
 
 /* What even light reaches the quads, from the cache, or found and kept there. */
-static void light_plants(World *world, CacheKey *key, Pool *pool)
+static Status light_plants(World *world, CacheKey *key, Pool *pool)
 {
     void  *octets;
     size_t count;
     if (cache_fetch(&octets, &count, world->cache, key)) {
         const Status status = plants_light_from_octets(world->plants, octets, count);
         free(octets);
-        if (status == STATUS_OK) return;
+        if (status == STATUS_OK) return STATUS_OK;
     }
-    forest_openness(world->plants, world->forest, pool);
+    const Status status = forest_openness(world->plants, world->forest, pool);
+    if (status != STATUS_OK) return status;
     count = world->cache ? plants_light_to_octets(NULL, world->plants) : 0;
-    if (count == 0 || !(octets = malloc(count))) return;
+    if (count == 0 || !(octets = malloc(count))) return STATUS_OK;
     plants_light_to_octets(octets, world->plants);
     cache_keep(world->cache, key, octets, count);
     free(octets);
+    return STATUS_OK;
 }
 
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool)
@@ -102,8 +104,10 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
     if (status == STATUS_OK) status = grow_plants(world, &key, config, isa, pool);
     if (status == STATUS_OK) status = forest_create(&world->forest, woods, world->plants, config, isa);
     if (status != STATUS_OK) return status;
-    light_plants(world, &key, pool);
+    status = light_plants(world, &key, pool);
+    if (status != STATUS_OK) return status;
     const PlantsKept kept = {*key.name ? world->cache : NULL, key.name};
+    forest_keep(world->forest, &kept);
     status = canopy_create_kept(&world->canopy, woods, world->plants, &world->materials, config->leaves, &kept);
     if (status == STATUS_OK) status = canopy_see_pages(world->canopy, world->forest, config->leaves);
     if (status != STATUS_OK) return status;

@@ -1,16 +1,17 @@
-/* tests/fuzz/fuzz_kept.c: any octets as what the cache keeps of canopies, stands of far woods, invented ground and
- * patches, past its checksum. What is taken has the same octets again. */
+/* tests/fuzz/fuzz_kept.c: any octets as what the cache keeps of canopies, stands of far woods, invented ground,
+ * patches, texels of hit tables and light of quads, past its checksum. What is taken has the same octets again. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "entities/models/patches.h"
 #include "render/light/far_woods.h"
+#include "render/trace/plants/forest_private.h"
 #include "terrain/invented/ways_private.h"
 
 #include <stdlib.h>
 
 const int fuzz_rounds = 20000;
 
-enum { kinds = 4, rows = 9 };
+enum { kinds = 6, rows = 9, texels_quads = 1000, light_groups = 50 };
 
 /* One of a kind, without values, or with those of a seed. */
 typedef struct Any {
@@ -18,6 +19,8 @@ typedef struct Any {
     WoodStand      *stand;
     InventedTerrain ground;
     Patches         patches;
+    uint32_t       *texel; /* of one way */
+    float (*share)[2];
 } Any;
 
 static const Model model = {.node_count = 2, .part_count = 2};
@@ -26,6 +29,8 @@ static bool any_create(Any *a, int kind)
 {
     *a = (Any){0};
     if (kind == 0) return canopy_create_bare(&a->canopy, &(Woods){.nx = 1, .ny = 1}) == STATUS_OK;
+    if (kind == 4) return (a->texel = calloc(table_side * table_side, sizeof *a->texel)) != NULL;
+    if (kind == 5) return (a->share = calloc(light_groups, sizeof *a->share)) != NULL;
     return kind != 1 || far_stand_create_bare(&a->stand) == STATUS_OK;
 }
 
@@ -35,6 +40,7 @@ static void any_destroy(Any *a)
     far_stand_destroy(a->stand);
     invented_free(&a->ground);
     patches_destroy(&a->patches);
+    free(a->texel), free(a->share);
 }
 
 static void values(Kept *kept, void *user, int kind)
@@ -44,12 +50,16 @@ static void values(Kept *kept, void *user, int kind)
     if (kind == 1) far_stand_kept_values(kept, &(StandKept){a->stand, rows});
     if (kind == 2) invented_kept_values(kept, &a->ground);
     if (kind == 3) patches_kept_values(kept, &(PatchesKept){&a->patches, &model});
+    if (kind == 4) kept_texels_values(kept, &(KeptTexels){a->texel, 1, texels_quads, 0});
+    if (kind == 5) kept_light_values(kept, &(KeptLight){a->share, light_groups});
 }
 static void              canopy(Kept *kept, void *user) { values(kept, user, 0); }
 static void              stand(Kept *kept, void *user) { values(kept, user, 1); }
 static void              ground(Kept *kept, void *user) { values(kept, user, 2); }
 static void              patches(Kept *kept, void *user) { values(kept, user, 3); }
-static KeptValues *const of[kinds] = {canopy, stand, ground, patches};
+static void              texels(Kept *kept, void *user) { values(kept, user, 4); }
+static void              light(Kept *kept, void *user) { values(kept, user, 5); }
+static KeptValues *const of[kinds] = {canopy, stand, ground, patches, texels, light};
 
 /* A level of four posts, a sea with a grid, a way and one of each that it has. */
 static void fill_ground(InventedTerrain *t)
@@ -82,6 +92,22 @@ static void fill_patches(Patches *p)
     p->link[0].b = p->body_of_part[1] = p->first_of_body[1] = 1, p->first_of_body[2] = 2;
 }
 
+/* A few lines: hits, one of the first quad and the last and each depth, and texels in which nothing is. */
+static void fill_texels(uint32_t *texel, uint32_t index)
+{
+    for (uint32_t k = 0; k < 4 + index % 16; k++) {
+        uint32_t *line = texel + (k * 37 + index) % table_side * table_side;
+        line[0] = line[63 + k] = table_nothing;
+        line[127] = (uint32_t)-table_depth_steps << table_quad_bits | 2;
+        line[64 - k] = (uint32_t)table_depth_steps << table_quad_bits | (texels_quads + 1);
+    }
+}
+
+static void fill_light(float (*share)[2])
+{
+    for (int k = 0; k < light_groups; k++) share[k][0] = share[k][1] = k % 3 ? (float)k / light_groups : -1;
+}
+
 /* By the first octet: a kind. */
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
@@ -91,6 +117,8 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     if (!any_create(&a, kind)) abort();
     if (kind == 2) fill_ground(&a.ground);
     if (kind == 3) fill_patches(&a.patches);
+    if (kind == 4) fill_texels(a.texel, index / kinds);
+    if (kind == 5) fill_light(a.share);
     void *octets = kept_write(&count, of[kind], &a);
     if (!octets || count >= fuzz_seed_octets) abort();
     out[0] = (uint8_t)kind;

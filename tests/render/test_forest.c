@@ -423,7 +423,7 @@ static void openness(void **state)
     Woods woods = hand_stand(plant, 1, origin, 0.5);
     plant[0] = (Plant){.height = 100, .width = 128, .kind = plant[0].kind};
     open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
-    forest_openness(&hand_plants, forest, NULL);
+    assert_int_equal(forest_openness(&hand_plants, forest, NULL), STATUS_OK);
     PlantShape *s = &hand_plants.shape[plant[0].kind][plant_whole];
     for (int t = 0; t < tried; t++) {
         const PlantQuad *q = &s->quad[s->quads - 1 - 3 * t]; /* leaves */

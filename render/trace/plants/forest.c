@@ -43,7 +43,8 @@ static void find_reach(ShapeScene *out, int quads)
     most[shape_azimuths] = most[0];
 }
 
-static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int level)
+/* What is known of a shape without its scene. */
+static void open_shape(ShapeScene *out, const Forest *forest, int kind, int level)
 {
     const PlantShape *shape = &forest->plants->shape[kind][level];
     const bool        bare = !forest->config.leaves && plant_is_deciduous((PlantKind)kind);
@@ -56,8 +57,16 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
         out->centre[c] = 0.5 * ((double)shape->low[c] + (double)shape->high[c]);
         out->half[c] = 0.5 * ((double)shape->high[c] - (double)shape->low[c]) + 1e-4;
     }
-    if (quads == 0 || (level == plant_fine && !forest->config.fine)) return STATUS_OK;
-    find_reach(out, quads);
+    if (level == plant_fine && !forest->config.fine) return;
+    out->quads = quads;
+    if (quads > 0) find_reach(out, quads);
+}
+
+Status shape_scene_build(ShapeScene *out, const Forest *forest)
+{
+    const PlantShape *shape = out->shape;
+    const int         quads = out->quads;
+    if (quads == 0) return STATUS_OK;
     RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_QUAD);
     float      *vertex = geometry ? rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                             3 * sizeof(float), (size_t)quads * 4)
@@ -91,7 +100,7 @@ static void unite_levels(ShapeScene *hull, const ShapeScene level[plant_levels])
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, square = 0;
     for (int a = 0; a <= shape_azimuths; a++) hull->reach[a] = -INFINITY;
     for (int l = 0; l < plant_levels; l++) {
-        if (!level[l].scene) continue;
+        if (level[l].quads == 0) continue;
         hull->azimuth = level[l].azimuth;
         for (int c = 0; c < 3; c++) {
             low[c] = fmin(low[c], level[l].centre[c] - level[l].half[c]);
@@ -108,6 +117,22 @@ static void unite_levels(ShapeScene *hull, const ShapeScene level[plant_levels])
         square += most * most;
     }
     hull->radius = sqrt(square);
+}
+
+/* Where a kind has a table, its finest shape alone is traced through, but for forest_openness. */
+static Status build_shapes(Forest *forest)
+{
+    Status status = STATUS_OK;
+    for (int kind = 0; kind < PLANT_KINDS && status == STATUS_OK; kind++) {
+        ShapeScene *shape = forest->shape[kind], *finest = &shape[forest_finest(forest)];
+        for (int level = 0; level < plant_levels; level++) open_shape(&shape[level], forest, kind, level);
+        unite_levels(&forest->hull[kind], shape);
+        const bool by_table = forest->config.tables && kind < PLANT_STANDING && finest->quads > 0;
+        for (int level = 0; level < plant_levels && status == STATUS_OK; level++)
+            if (!by_table || &shape[level] == finest) status = shape_scene_build(&shape[level], forest);
+        if (status == STATUS_OK && by_table) status = plant_table_create(&forest->table[kind], finest);
+    }
+    return status;
 }
 
 /* ---- lists ------------------------------------------------------------------------------------ */
@@ -179,14 +204,7 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
         forest->azimuth[a][0] = cos(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);
         forest->azimuth[a][1] = sin(2 * pi_rad * (a % shape_azimuths) / shape_azimuths);
     }
-    for (int kind = 0; kind < PLANT_KINDS && status == STATUS_OK; kind++)
-        for (int level = 0; level < plant_levels && status == STATUS_OK; level++)
-            status = build_shape(&forest->shape[kind][level], forest, kind, level);
-    for (int kind = 0; kind < PLANT_KINDS; kind++) unite_levels(&forest->hull[kind], forest->shape[kind]);
-    for (int kind = 0; kind < PLANT_STANDING && status == STATUS_OK && config->tables; kind++) {
-        const ShapeScene *finest = &forest->shape[kind][forest_finest(forest)];
-        if (finest->scene) status = plant_table_create(&forest->table[kind], finest);
-    }
+    status = build_shapes(forest);
     forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count, .per_box = 1};
     memcpy(forest->standing.origin_enu, woods->origin_enu, sizeof woods->origin_enu);
     if (status == STATUS_OK) status = plant_list_commit(&forest->standing, forest, false);
@@ -220,6 +238,7 @@ void forest_destroy(Forest *forest)
 {
     if (!forest) return;
     plant_list_close(&forest->standing);
+    if (!forest->borrows) forest_kept_destroy(forest);
     forest_pages_destroy(forest);
     for (int kind = 0; kind < PLANT_STANDING && !forest->borrows; kind++) plant_table_destroy(forest->table[kind]);
     for (int kind = 0; kind < PLANT_KINDS && !forest->borrows; kind++)
@@ -258,6 +277,7 @@ void forest_frame_close(ForestFrame *frame)
 {
     low_plants_close(frame);
     far_pages_close(frame);
+    if (frame->forest) forest_kept_after_frame(frame->forest);
 }
 
 /* The whole crown leans with the wind's pressure, which grows with its square, and swings about that at its natural

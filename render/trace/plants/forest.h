@@ -14,7 +14,7 @@
 #ifndef RENDER_TRACE_PLANTS_FOREST_H
 #define RENDER_TRACE_PLANTS_FOREST_H
 
-#include "render/trace/plants/plants.h"
+#include "render/trace/plants/plants_kept.h"
 #include "terrain/woods/woods.h"
 
 typedef struct Forest Forest;
@@ -49,8 +49,16 @@ void   forest_destroy(Forest *forest);
 /* Fills in PlantQuad.open_up and open_down of the forest's own prototypes, by rays through them: 24 a leaf, 8 a side of
  * a branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). Those of
  * patterned shapes are found when a ray first asks for them (ForestSurface): 2 a card and 2 a side; all cards of a
- * spray, and all sides of a piece of branch, have their mean. pool: may be NULL. */
-void          forest_openness(Plants *plants, const Forest *forest, Pool *pool);
+ * spray, and all sides of a piece of branch, have their mean. pool: may be NULL. STATUS_NO_MEMORY: some are as before.
+ */
+Status forest_openness(Plants *plants, const Forest *forest, Pool *pool);
+/* From here on what rays find of the prototypes, texels of tables and the light of patterned shapes, is taken from
+ * kept->cache when a ray first needs it, and written there when the forest is destroyed, and after a frame where much
+ * of it is new; cache NULL: not. kept->name: of these prototypes; the cache outlives the forest. Before the first ray.
+ */
+void forest_keep(Forest *forest, const PlantsKept *kept);
+/* Writes now what is new. Thread-safe. */
+void          forest_keep_found(const Forest *forest);
 const Woods  *forest_woods(const Forest *forest);
 const Plants *forest_plants(const Forest *forest);
 ForestConfig  forest_config(const Forest *forest);

@@ -77,43 +77,48 @@ static void open_quads(void *user, int worker, int task)
     }
 }
 
-void forest_openness(Plants *plants, const Forest *forest, Pool *pool)
+/* Of all quads of a shape, whose scene is built for that alone where rays do not need it otherwise. */
+static Status open_shape(PlantShape *shape, const ShapeScene *traced, const Forest *forest, Pool *pool)
 {
+    ShapeScene   own = *traced;
+    const Status status = own.scene ? STATUS_OK : shape_scene_build(&own, forest);
+    if (status == STATUS_OK) {
+        Opening   o = {&own, shape, {bark_rays, leaf_rays, bark_rays}};
+        const int tasks = (shape->quads + quads_a_task - 1) / quads_a_task;
+        if (pool) pool_run(pool, tasks, open_quads, &o);
+        else
+            for (int k = 0; k < tasks; k++) open_quads(&o, 0, k);
+    }
+    if (own.scene && !traced->scene) rtcReleaseScene(own.scene);
+    return status;
+}
+
+Status forest_openness(Plants *plants, const Forest *forest, Pool *pool)
+{
+    Status status = STATUS_OK;
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        for (int level = kind < plants->patterned ? plant_whole : forest_finest(forest); level < plant_levels;
-             level++) {
-            Opening   o = {&forest->shape[kind][level], &plants->shape[kind][level], {bark_rays, leaf_rays, bark_rays}};
-            const int tasks = (o.shape->quads + quads_a_task - 1) / quads_a_task;
-            if (pool) pool_run(pool, tasks, open_quads, &o);
-            else
-                for (int k = 0; k < tasks; k++) open_quads(&o, 0, k);
-        }
+        for (int level = kind < plants->patterned ? plant_whole : forest_finest(forest);
+             level < plant_levels && status == STATUS_OK; level++)
+            status = open_shape(&plants->shape[kind][level], &forest->shape[kind][level], forest, pool);
+    return status;
 }
 
 /* ---- patterned shapes: when a quad is first asked for ------------------------------------------- */
 
-/* Cards of a spray, and sides of a piece of branch, have one mean: they lie side by side. */
-static bool alike(const PlantShape *shape, int k, int l)
-{
-    const PlantQuad *a = &shape->quad[k], *b = &shape->quad[l];
-    return a->organ == b->organ && a->piece == b->piece;
-}
-
 void plant_openness(float open_share[2], const ShapeScene *scene, uint32_t quad)
 {
     PlantShape *shape = (PlantShape *)(uintptr_t)scene->shape;
-    PlantQuad  *q = &shape->quad[quad];
-    __atomic_load(&q->open_up, &open_share[0], __ATOMIC_RELAXED);
-    __atomic_load(&q->open_down, &open_share[1], __ATOMIC_RELAXED);
-    if (open_share[0] >= 0 && open_share[1] >= 0) return;
+    if (plant_open_get(open_share, &shape->quad[quad])) return;
+    if (!shape_kept_is_taken(scene->kept, kept_light)) {
+        shape_kept_take(scene->kept, kept_light);
+        if (plant_open_get(open_share, &shape->quad[quad])) return;
+    }
     const Opening o = {scene, shape, {fine_bark_rays, fine_leaf_rays, fine_bark_rays}};
     int           first = (int)quad, end = (int)quad + 1, all[2] = {0}, open[2] = {0};
-    while (first > 0 && alike(shape, first - 1, first)) first--;
-    while (end < shape->quads && alike(shape, end - 1, end)) end++;
+    while (first > 0 && plant_quads_alike(shape, first - 1, first)) first--;
+    while (end < shape->quads && plant_quads_alike(shape, end - 1, end)) end++;
     for (int k = first; k < end; k++) count_quad(all, open, &o, k);
     shares_of(open_share, all, open);
-    for (int k = first; k < end; k++) { /* every thread that finds them stores the same */
-        __atomic_store(&shape->quad[k].open_up, &open_share[0], __ATOMIC_RELAXED);
-        __atomic_store(&shape->quad[k].open_down, &open_share[1], __ATOMIC_RELAXED);
-    }
+    for (int k = first; k < end; k++) plant_open_set(&shape->quad[k], open_share);
+    shape_kept_count(scene->kept, kept_light, 1);
 }

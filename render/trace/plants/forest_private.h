@@ -8,18 +8,22 @@
 
 #include "pitviper_simd.h"
 
+#include <pthread.h>
+
 enum { shape_azimuths = 64 };
 
 /* A prototype, ready to be traced: its quads about their middle, and Embree's tree over them. */
 typedef struct ShapeScene {
-    RTCScene           scene;
+    RTCScene           scene; /* NULL: not built */
     const PlantShape  *shape;
+    int                quads;              /* of it that are traced */
     const LeafOutline *outline;            /* [plant_outlines] */
     const LeafPattern *pattern;            /* [plant_outlines]; NULL: leaves have outlines */
     double             centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
     const double (*azimuth)[2];            /* unit vectors of azimuths, [shape_azimuths + 1] of the forest */
-    double most;                           /* a coordinate of its box has, either way; of a hull alone, as the next */
-    double radius;                         /* of a ball about its axis at half its height, which holds the box */
+    double            most;                /* a coordinate of its box has, either way; of a hull alone, as the next */
+    double            radius;              /* of a ball about its axis at half its height, which holds the box */
+    struct ShapeKept *kept;                /* where light of a patterned shape is kept; NULL: nowhere */
     double reach[shape_azimuths + 1];      /* how far it reaches towards azimuths from x to y, from its axis; the last
                                             * is the first */
 } ShapeScene;
@@ -53,6 +57,7 @@ typedef struct PlantTable {
     double            step;                /* width of a texel of the finest level, likewise */
     TableWay          way[table_ways];     /* elevations from 15 degrees upwards to straight down */
     uint32_t         *level[table_levels]; /* [table_ways][side][side] */
+    struct ShapeKept *kept;                /* NULL: texels are not kept between runs */
 } PlantTable;
 
 /* Its memory, 41.8 MB, is the machine's only where it is asked for. STATUS_NO_MEMORY; STATUS_UNSUPPORTED: the prototype
@@ -71,6 +76,60 @@ static inline const uint32_t *plant_table_texels(const PlantTable *table, int wa
 }
 /* Traces a texel that is table_unset there, and keeps it. Thread-safe. */
 uint32_t plant_table_trace(PlantTable *table, int way, int level, int place);
+
+/* ---- what rays have found of prototypes, between runs (forest_kept.c) ---------------------------- */
+
+typedef struct ForestKept ForestKept;
+
+/* Parts of what rays find of a prototype, each an entry of the cache: texels of the table's ways of one elevation, and
+ * the light that reaches its quads. */
+enum { kept_light = table_elevations, kept_parts };
+
+typedef struct KeptPart {
+    int      taken;        /* atomic: the entry has been looked for */
+    uint32_t fresh, known; /* atomic: values found since it was written, about; values that it has */
+} KeptPart;
+
+/* Those of the finest level of a kind. */
+typedef struct ShapeKept {
+    const ForestKept *all;
+    pthread_mutex_t   lock; /* of taking and writing */
+    int               kind;
+    PlantTable       *table; /* NULL: none */
+    const ShapeScene *shape;
+    KeptPart          part[kept_parts];
+} ShapeKept;
+
+/* Values of an entry, all at once: those that are not known are table_unset, or -1. */
+typedef struct KeptTexels {
+    uint32_t *texel; /* [ways][table_side][table_side] of the finest level; NULL: what is read is only checked */
+    int       ways, quads;
+    uint32_t  known; /* counts those that are passed */
+} KeptTexels;
+typedef struct KeptLight {
+    float (*share)[2]; /* PlantQuad.open_up and open_down, [groups] */
+    int groups;        /* of quads side by side that are alike (plant_quads_alike) */
+} KeptLight;
+/* For each way, a bit for each line of texels that has any known; for each of these a bit for each texel that is known,
+ * then one for each that is a hit; the hits' texels. user: KeptTexels, of zeros while they are read. */
+KeptValues kept_texels_values;
+/* user: KeptLight. */
+KeptValues kept_light_values;
+
+/* Takes what the entry of a part has, once: before a value is found that is not there. Other threads wait for it. */
+void               shape_kept_take(ShapeKept *kept, int part);
+static inline bool shape_kept_is_taken(const ShapeKept *kept, int part)
+{
+    return !kept || __atomic_load_n(&kept->part[part].taken, __ATOMIC_ACQUIRE);
+}
+/* Values that were found. */
+static inline void shape_kept_count(ShapeKept *kept, int part, uint32_t found)
+{
+    if (kept) __atomic_fetch_add(&kept->part[part].fresh, found, __ATOMIC_RELAXED);
+}
+/* After a frame: writes at most one part, where many values are new. */
+void forest_kept_after_frame(const struct Forest *forest);
+void forest_kept_destroy(struct Forest *forest);
 
 /* Plants that one tree of boxes holds. */
 typedef struct PlantList {
@@ -103,6 +162,7 @@ struct Forest {
     double        azimuth[shape_azimuths + 1][2];
     PlantTable   *table[PLANT_STANDING]; /* of the finest shapes; NULL: none */
     bool          borrows;               /* their scenes and tables */
+    ForestKept   *kept;                  /* what is kept of them between runs; NULL: nothing */
     PlantList     standing;
     LowSquares   *squares;
     ForestPages  *pages;       /* NULL: none */
@@ -135,6 +195,8 @@ static inline uint32_t plant_number(const PlantList *list, uint32_t place)
 /* forest.c: latches the first error of a device of the forest, and says what it was. */
 void   forest_latch_error(void *forest, enum RTCError code, const char *text);
 Status forest_status(const struct Forest *forest);
+/* Builds the scene of a shape. */
+Status shape_scene_build(ShapeScene *shape, const struct Forest *forest);
 /* Embree's callbacks of a scene of boxes. */
 typedef struct BoxCalls {
     RTCBoundsFunction     bounds;
@@ -234,6 +296,25 @@ bool shape_first(uint32_t *quad, double *at_m, const ShapeScene *shape, const do
 /* PlantQuad.open_up and open_down of a patterned shape: found when first asked for, and kept. A pure function of the
  * prototype. Thread-safe. */
 void plant_openness(float open_share[2], const ShapeScene *shape, uint32_t quad);
+
+/* Whether quads have one mean light: cards of a spray, and sides of a piece of branch, which lie side by side. */
+static inline bool plant_quads_alike(const PlantShape *shape, int k, int l)
+{
+    const PlantQuad *a = &shape->quad[k], *b = &shape->quad[l];
+    return a->organ == b->organ && a->piece == b->piece;
+}
+/* Its light, which threads may find at the same time: each stores the same. False: not known yet. */
+static inline bool plant_open_get(float open_share[2], const PlantQuad *quad)
+{
+    __atomic_load(&quad->open_up, &open_share[0], __ATOMIC_RELAXED);
+    __atomic_load(&quad->open_down, &open_share[1], __ATOMIC_RELAXED);
+    return open_share[0] >= 0 && open_share[1] >= 0;
+}
+static inline void plant_open_set(PlantQuad *quad, float open_share[2])
+{
+    __atomic_store(&quad->open_up, &open_share[0], __ATOMIC_RELAXED);
+    __atomic_store(&quad->open_down, &open_share[1], __ATOMIC_RELAXED);
+}
 
 /* The box that a plant is within, with room for its sway, about its foot: as the list keeps it, else a wider one. */
 void plant_bounds(double low_m[3], double high_m[3], const PlantList *list, const Plant *plant);

@@ -5,8 +5,8 @@
  * most (5.6 degrees about the axis, 3.75 in elevation). Coarser levels hold one of the texels that they cover, chosen
  * at random: a look-up of any level is one sample, with the statistics of a ray.
  *
- * A texel is traced when it is first asked for, and kept. It is a pure function of the prototype: neither the order of
- * asking nor the thread that traces it shows. */
+ * A texel is traced when it is first asked for, and kept, in the memory and between runs (forest_kept.c). It is a pure
+ * function of the prototype: neither the order of asking nor the thread that traces it shows. */
 #include "render/trace/plants/forest_private.h"
 
 #include <stdlib.h>
@@ -70,11 +70,18 @@ static int finest_of(int way, int level, int place)
 
 uint32_t plant_table_trace(PlantTable *table, int way, int level, int place)
 {
+    const int row = way / table_azimuths; /* its part in the cache */
     uint32_t *at = (uint32_t *)(uintptr_t)plant_table_texels(table, way, level) + place;
     uint32_t  texel = __atomic_load_n(at, __ATOMIC_RELAXED);
     if (texel != table_unset) return texel;
+    if (level == 0 && !shape_kept_is_taken(table->kept, row)) {
+        shape_kept_take(table->kept, row);
+        texel = __atomic_load_n(at, __ATOMIC_RELAXED);
+        if (texel != table_unset) return texel;
+    }
     texel = level == 0 ? trace(table, way, place) : plant_table_trace(table, way, 0, finest_of(way, level, place));
     __atomic_store_n(at, texel, __ATOMIC_RELAXED); /* every thread that traces it stores the same */
+    if (level == 0) shape_kept_count(table->kept, row, 1);
     return texel;
 }
 

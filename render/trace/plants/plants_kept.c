@@ -38,16 +38,3 @@ Status plants_light_from_octets(Plants *plants, const void *octets, size_t count
     }
     return STATUS_OK;
 }
-
-void plants_add_to_key(CacheKey *key, const Plants *plants)
-{
-    for (int k = 0; k < PLANT_KINDS * plant_levels; k++) {
-        const PlantShape *shape = &plants->shape[k / plant_levels][k % plant_levels];
-        cache_key_add(key, &shape->quads, sizeof shape->quads);
-        const int step = shape_of((Plants *)(uintptr_t)plants, k) ? 1 : 16; /* nothing that grows them changes fewer */
-        for (int q = 0; q < shape->quads; q += step) cache_key_add(key, &shape->quad[q], offsetof(PlantQuad, open_up));
-    }
-    const size_t patterns = (size_t)plants->patterned * sizeof *plants->pattern;
-    cache_key_add(key, plants->outline, sizeof plants->outline);
-    if (patterns > 0) cache_key_add(key, plants->pattern, patterns);
-}

@@ -12,8 +12,6 @@
 size_t plants_light_to_octets(void *out, const Plants *plants);
 /* STATUS_BAD_VALUE: they are not of these shapes, or a share is not in 0 .. 1; nothing has changed then. */
 Status plants_light_from_octets(Plants *plants, const void *octets, size_t count);
-/* What the prototypes are, in a key of the cache. */
-void plants_add_to_key(CacheKey *key, const Plants *plants);
 
 /* Where what follows from prototypes is kept: beside them, by their name. */
 typedef struct PlantsKept {

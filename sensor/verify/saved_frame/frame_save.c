@@ -143,7 +143,8 @@ static Status gather_places(GroundCutout *out, const Frame *f, Arena *arena)
 
 /* ---- verified ------------------------------------------------------------------------------------- */
 
-/* Whether the octets give the same planes, and the same map by a radar; NULL: there is none. */
+/* Whether the octets give the same planes, and the same map by a radar; NULL: there is none. What follows from the
+ * file's plants and this installation's tables is taken from the run's cache. */
 static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, SeekerRadar *radar, Arena *arena)
 {
     const RadarFrame *measured;
@@ -154,13 +155,18 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Se
     World             world = {0};
     Woods             woods = {0};
     const SavedStage  stage = {&file, &file.snapshot, &world, save->config, save->pool, arena};
+    char              follows[saved_follows_size];
     *same = false;
     if (!again) return STATUS_NO_MEMORY;
     Status status = saved_frame_parse(&file, bytes->bytes, bytes->count, "the file just made", arena);
     if (status == STATUS_OK) status = saved_ground_open(&landscape, &file.ground);
     if (status == STATUS_OK)
         status = frame_world(&world, save->config, f->world->catalog, &landscape, &file.ground.frame, "avx2");
-    if (status == STATUS_OK) status = saved_ground_plant(&world, &woods, &file, save->config, NULL, "avx2", save->pool);
+    if (status == STATUS_OK) {
+        world_keep(&world, f->world->cache);
+        status = saved_ground_plant(&world, &woods, &file, save->config,
+                                    saved_follows(follows, &file, &file.tables) ? follows : NULL, "avx2", save->pool);
+    }
     if (status == STATUS_OK) status = frame_world_warm(&world, save->config, file.unix_s, save->pool);
     if (status == STATUS_OK) {
         file.snapshot.effect_table = f->seen.snapshot.effect_table;
@@ -191,6 +197,7 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const SavedFrame *fi
     Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK && file->measured)
         status = radar_open(&radar, save->config, "avx2", false, save->frame->world->cache);
+    if (save->frame->world->forest) forest_keep_found(save->frame->world->forest); /* what the frame found is there */
     /* where plants stand follows from all of the ground */
     const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store) && !file->planted;
     if (status == STATUS_OK && cut) status = gather_places(&kept, save->frame, gathered);

@@ -59,10 +59,7 @@ Status saved_ground_open(Landscape *out, const LandscapeParts *parts)
     return status;
 }
 
-enum { follows_size = 2 * sha256_text_size };
-
-/* What its landscape and tables follow from, for the key of its plants. */
-static bool say_follows(char out[follows_size], const SavedFrame *file, const TablesUsed *tables)
+bool saved_follows(char out[saved_follows_size], const SavedFrame *file, const TablesUsed *tables)
 {
     Sha256 *digest = sha256_begin();
     bool    good = digest != NULL;
@@ -200,7 +197,7 @@ static Status take_models(SavedScene *s, const SavedFrame *file, bool forced)
 
 Status saved_scene_open(SavedScene *s, const SavedFrame *file, bool forced, const char *isa, Pool *pool)
 {
-    char       catalog[path_size], effects[path_size], follows[follows_size];
+    char       catalog[path_size], effects[path_size], follows[saved_follows_size];
     TablesUsed here;
     *s = (SavedScene){0};
     Status status = read_settings(&s->config, file);
@@ -217,10 +214,10 @@ Status saved_scene_open(SavedScene *s, const SavedFrame *file, bool forced, cons
     if (status == STATUS_OK) status = saved_ground_open(&s->landscape, &file->ground);
     if (status == STATUS_OK)
         status = frame_world(&s->world, &s->config, s->catalog, &s->landscape, &file->ground.frame, isa);
-    if (status == STATUS_OK) s->world.cache = s->cache = frame_world_cache(&s->config);
+    if (status == STATUS_OK) world_keep(&s->world, s->cache = frame_world_cache(&s->config));
     if (status == STATUS_OK)
         status = saved_ground_plant(&s->world, &s->woods, file, &s->config,
-                                    say_follows(follows, file, &here) ? follows : NULL, isa, pool);
+                                    saved_follows(follows, file, &here) ? follows : NULL, isa, pool);
     if (status == STATUS_OK) status = frame_world_warm(&s->world, &s->config, file->unix_s, pool);
     s->snapshot.effect_table = &s->effects;
     return status;

@@ -35,6 +35,9 @@ Status saved_ground_open(Landscape *out, const LandscapeParts *parts);
  * world, and is destroyed by the caller, also on failure. */
 Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Config *config, const char *follows,
                           const char *isa, Pool *pool);
+/* What its landscape and tables follow from, for saved_ground_plant. False: there is no memory. */
+enum { saved_follows_size = 2 * sha256_text_size };
+bool saved_follows(char out[saved_follows_size], const SavedFrame *file, const TablesUsed *tables);
 
 /* ---- tables -------------------------------------------------------------------------------------- */
 
