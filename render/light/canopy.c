@@ -330,6 +330,16 @@ static void light_of(float *restrict leaves_w_m2, float *restrict ground, const 
     for (int i = 0; i < count && !(open_w_m2 > 0); i++) ground[i] = 1;
 }
 
+/* Asks for the posts about a place, of the finest level that has it: they lie far apart in memory. */
+static void ask_for_height(const Elevation *elevation, double x_m, double y_m)
+{
+    const ElevationLevel *level = &elevation->level[0];
+    const double          i = (x_m - level->x0_m) / level->spacing_m, j = (y_m - level->y0_m) / level->spacing_m;
+    if (elevation->level_count == 0 || !(i >= 0 && j >= 0 && i < level->nx - 1 && j < level->ny - 1)) return;
+    const uint16_t *post = level->stored + elevation_stored_index(level, (int)i, (int)j);
+    __builtin_prefetch(post), __builtin_prefetch(post + elevation_tile_side);
+}
+
 bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape, const Daylight *light,
                   const float ground_rho[optical_channel_count], const Hits *hits, unsigned channels)
 {
@@ -337,6 +347,9 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
     bool         any = false;
     Places       places;
     for (int i = 0; i < hits->count; i++) {
+        const int next = i + 8;
+        if (landscape && next < hits->count && hits->kind[next] == hit_plant)
+            ask_for_height(&landscape->elevation, hits->p_enu[0][next], hits->p_enu[1][next]);
         const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
         const bool   plant = hits->kind[i] == hit_plant;
         CanopyPlace  place = open_place;

@@ -257,66 +257,6 @@ static void many_surfaces_at_once(void **state)
 
 /* ---- crowns ----------------------------------------------------------------------------------- */
 
-/* Leaves found many at once have the bits of those found one by one: on plants that lean and are turned, in more than
- * one piece of work, and on a card without area. */
-static void many_leaves_at_once(void **state)
-{
-    enum { count = 150, flat = 7 };
-    static const double calm[2] = {0, 0}, eye[3] = {0, -100, 0};
-    static ForestHit    hit[count];
-    static double       d[3][count], n_geo[3][count], n_enu[3][count];
-    static float        albedo[count], open_up[count], open_down[count];
-    const ForestHit    *list[count];
-    Plant               straight[PLANT_STANDING];
-    ForestFrame         frame;
-    Arena              *arena = arena_create();
-    ForestLeaves        leaves = {.n_geo = {n_geo[0], n_geo[1], n_geo[2]},
-                                  .n_enu = {n_enu[0], n_enu[1], n_enu[2]},
-                                  .albedo = albedo,
-                                  .open_up = open_up,
-                                  .open_down = open_down};
-    (void)state;
-    memcpy(straight, plant, sizeof straight);
-    for (int k = 0; k < PLANT_STANDING; k++)
-        plant[k].lean[0] = (int8_t)(9 * k), plant[k].lean[1] = (int8_t)(40 - 7 * k),
-        plant[k].twist = (uint16_t)(7000 * k), plant[k].width = (uint8_t)(100 + 10 * k);
-    assert_int_equal(forest_frame_open(&frame, forest[0], eye, 1000, 0, 0, calm, NULL, arena), STATUS_OK);
-    for (int i = 0; i < count; i++) {
-        const int         kind = i % PLANT_STANDING;
-        const PlantShape *s = &plants->shape[kind][plant_fine];
-        const double      u = random_uniform(9, 1, 0, (uint64_t)i), v = random_uniform(9, 2, 0, (uint64_t)i);
-        hit[i] = (ForestHit){.plant = (uint32_t)kind,
-                             .place = (uint32_t)kind,
-                             .quad = (uint32_t)(s->bark_quads + i * 37 % (s->quads - s->bark_quads)),
-                             .kind = (uint8_t)kind,
-                             .level = plant_fine,
-                             .organ = PLANT_LEAF,
-                             .uv = {(float)u, (float)v}};
-        list[i] = &hit[i];
-        for (int c = 0; c < 3; c++) d[c][i] = 2 * random_uniform(9, 3 + (uint32_t)c, 0, (uint64_t)i) - 1;
-    }
-    PlantQuad *card = &plants->shape[hit[flat].kind][plant_fine].quad[hit[flat].quad], whole = *card;
-    memcpy(card->corner[2], card->corner[1], sizeof card->corner[1]);
-    memcpy(card->corner[3], card->corner[0], sizeof card->corner[0]);
-    forest_leaves(&leaves, &frame, list, count, (const double *const[3]){d[0], d[1], d[2]});
-    for (int i = 0; i < count; i++) {
-        const double way[3] = {d[0][i], d[1][i], d[2][i]}, geo[3] = {n_geo[0][i], n_geo[1][i], n_geo[2][i]},
-                     enu[3] = {n_enu[0][i], n_enu[1][i], n_enu[2][i]};
-        ForestSurface one;
-        CHECK(forest_is_leaf(&frame, &hit[i]));
-        forest_surface(&one, &frame, &hit[i], eye, way, 50, 0.01f);
-        assert_memory_equal(one.n_geo, geo, sizeof geo);
-        assert_memory_equal(one.n_enu, enu, sizeof enu);
-        CHECK(one.albedo == albedo[i] && one.open_up == open_up[i] && one.open_down == open_down[i]);
-        CHECK(one.radius_m == 0);
-    }
-    CHECK(n_geo[2][flat] == 1 || n_geo[2][flat] == -1);
-    *card = whole;
-    memcpy(plant, straight, sizeof straight);
-    forest_frame_close(&frame);
-    arena_destroy(arena);
-}
-
 /* With the same leaf area in nearly the same places a crown lets as many rays through as at plant_whole. */
 static void gaps_of_crowns(void **state)
 {

@@ -227,6 +227,25 @@ static void put_leaves(ForestSurfaces *out, Leaves *l, const ForestFrame *frame,
     l->count = 0;
 }
 
+/* What a hit needs lies far from what the one before it needs: its card is asked for first, then, once that is there,
+ * the cell of its pattern. */
+enum { ahead_card = 12, ahead_cell = 6 };
+
+static void ask_for_card(const ForestFrame *frame, const ForestHit *hit)
+{
+    const char *quad = (const char *)&frame->forest->shape[hit->kind][hit->level].shape->quad[hit->quad];
+    __builtin_prefetch(quad), __builtin_prefetch(quad + sizeof(PlantQuad) - 1);
+}
+
+static void ask_for_cell(const ForestFrame *frame, const ForestHit *hit)
+{
+    const ShapeScene *shape = &frame->forest->shape[hit->kind][hit->level];
+    const float       u = hit->uv[0], v = hit->uv[1];
+    if (hit->organ != PLANT_LEAF || !shape->pattern || !(u >= 0 && u < 1 && v >= 0 && v < 1)) return;
+    const LeafPattern *pattern = &shape->pattern[shape->shape->quad[hit->quad].outline];
+    __builtin_prefetch(&pattern->leaflet[(int)(v * plant_pattern_side)][(int)(u * plant_pattern_side)]);
+}
+
 void forest_surfaces(ForestSurfaces *out, const ForestFrame *frame, const ForestHit *const *hit, int count,
                      const ForestRays *rays)
 {
@@ -235,6 +254,8 @@ void forest_surfaces(ForestSurfaces *out, const ForestFrame *frame, const Forest
     leaves.count = 0;
     for (int k = 0; k < stands_kept; k++) kept[k].plant = NULL;
     for (int k = 0; k < count; k++) {
+        if (k + ahead_card < count) ask_for_card(frame, hit[k + ahead_card]);
+        if (k + ahead_cell < count) ask_for_cell(frame, hit[k + ahead_cell]);
         const PlantList *list = forest_list_of(frame, hit[k]);
         const Plant     *plant = &list->plant[hit[k]->place];
         Stand           *stand = &kept[(uintptr_t)plant / sizeof *plant % stands_kept];
