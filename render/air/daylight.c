@@ -13,7 +13,7 @@ double cos_azimuth(const double a_enu[3], const double b_enu[3])
 
 double acos_quick(double c)
 {
-    const double x = fmin(fabs(c), 1);
+    const double x = fabs(c) < 1 ? fabs(c) : 1; /* fmin compiles to a call */
     const double a = sqrt(1 - x) * (1.5707288 + x * (-0.2121144 + x * (0.0742610 - x * 0.0187293)));
     return c < 0 ? pi_rad - a : a;
 }
@@ -35,9 +35,9 @@ static void place_at(SkyPlace *out, const double sun_d_enu[3], const double d_en
     /* by the chord, since the cosine of a small angle has lost half its digits; chord = 2 sin(angle / 2) */
     double chord[3];
     v3_sub(chord, d_enu, sun_d_enu);
-    const double c2 = fmin(0.25 * v3_dot(chord, chord), 1), angle = c2 < 0.01 ? 2 * sqrt(c2) : acos_quick(1 - 2 * c2);
-    const double blurred = fmin(fmax(angle, blur_rad), pi_rad);
-    out->angle_share = (float)split(&out->angle, air_sky_angles * sqrt(blurred / pi_rad), air_sky_angles);
+    const double square = 0.25 * v3_dot(chord, chord), c2 = square < 1 ? square : 1;
+    const double angle = c2 < 0.01 ? 2 * sqrt(c2) : acos_quick(1 - 2 * c2), wide = angle > blur_rad ? angle : blur_rad;
+    out->angle_share = (float)split(&out->angle, air_sky_angles * sqrt(fmin(wide, pi_rad) / pi_rad), air_sky_angles);
 }
 
 static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3], double blur_rad)

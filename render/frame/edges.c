@@ -233,67 +233,110 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
     return (other ? refine_ground : 0) | (job->sun[a] != job->sun[b] ? refine_sun : 0);
 }
 
-/* 1 where `count` pixels from a on and those from b on are clearly alike, as most are: in arrays, and never where
- * edge_between would find an edge. */
-static void find_plain(uint32_t *restrict plain, const Job *job, size_t a, size_t b, int count)
+/* What a pair of neighbours is, in find_pairs: it may be an edge; they are clearly alike; some plant is in it, and it
+ * is none unless plants are (edge_between). */
+enum { pair_may_differ, pair_alike, pair_of_plants };
+
+/* Pairs of `count` pixels from a on and those from b on: in arrays, as most need no closer look. */
+static void find_pairs(uint32_t *restrict pair, const Job *job, size_t a, size_t b, int count)
 {
     const Picture  *p = job->picture;
     const float    *nx = p->normal[0], *ny = p->normal[1], *nz = p->normal[2], *range_m = p->range_m;
     const uint32_t *entity = p->entity, *part = p->part, *material = p->material;
     const uint32_t *plant = p->instance ? p->instance : p->part; /* none: a plane that is compared anyway */
+    const uint32_t  plants = p->instance != NULL;
     const float     cosine = (float)sharp_cosine * 1.0001f, step = (float)step_part * 0.999f;
     for (int i = 0; i < count; i++) {
         const size_t   k = a + (size_t)i, l = b + (size_t)i;
-        const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]) | (material[k] ^ material[l]) |
-                               (plant[k] ^ plant[l]) | (uint32_t)(job->sun[k] != job->sun[l]);
-        const float turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
-        const float near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
-        const float deep_m = fabsf(range_m[k] - range_m[l]);
-        plain[i] = (uint32_t)(other == 0) & (uint32_t)(turn > cosine) & (uint32_t)(deep_m <= step * near_m);
+        const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]);
+        const uint32_t else_other =
+            (material[k] ^ material[l]) | (plant[k] ^ plant[l]) | (uint32_t)(job->sun[k] != job->sun[l]);
+        const float    turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
+        const float    near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
+        const float    far_m = range_m[k] < range_m[l] ? range_m[l] : range_m[k];
+        const uint32_t plain = (uint32_t)((other | else_other) == 0) & (uint32_t)(turn > cosine) &
+                               (uint32_t)(far_m - near_m <= step * near_m);
+        const uint32_t sky = (uint32_t) !(near_m < INFINITY);
+        const uint32_t leaves =
+            plants & (uint32_t)(other == 0) & (uint32_t)(far_m < INFINITY) & (uint32_t)((plant[k] | plant[l]) != 0);
+        pair[i] = plain | sky ? pair_alike : leaves ? pair_of_plants : pair_may_differ;
     }
 }
 
-void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, int x1, int y1)
+/* The four pairs of a pixel: left, right, above, below. */
+typedef struct PixelPairs {
+    uint32_t pair[4];
+} PixelPairs;
+
+/* Flags of a pixel at x, y by its neighbours, those marked included. leafy: it or some neighbour shows a plant. */
+static unsigned flags_of_pairs(bool *leafy, const Job *job, int x, int y, const PixelPairs *of)
 {
-    enum { side = tile_side_samples };
     static const int beside[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     const View      *view = &job->request->view;
-    const int        width = x1 - x0;
+    const size_t     px = pixel_index(job, x, y);
+    unsigned         flag = job->refine[px];
+    const bool       leaves = flag & refine_leaves;
+    *leafy = picture_shows_plant(job->picture, px);
+    for (int n = 0; n < 4 && !(flag & refine_all); n++) {
+        const int xb = x + beside[n][0], yb = y + beside[n][1];
+        if (of->pair[n] == pair_alike || (of->pair[n] == pair_of_plants && *leafy && !leaves)) continue;
+        if (xb < 0 || yb < 0 || xb >= view->width || yb >= view->height) continue;
+        *leafy |= picture_shows_plant(job->picture, pixel_index(job, xb, yb));
+        if (of->pair[n] == pair_may_differ || leaves) flag |= edge_between(job, x, y, xb, yb, leaves);
+    }
+    return flag;
+}
+
+/* Marks pixels on borders of ground classes, of those in `ask`: by the classes at their corners. */
+static void mark_borders(uint8_t flags[hits_capacity], const bool ask[hits_capacity], const Job *job, const Tile *tile)
+{
+    const int width = tile->x1 - tile->x0, columns = width + 1, pixels = width * (tile->y1 - tile->y0);
+    uint16_t  corner[corner_capacity];
+    bool      wanted[corner_capacity] = {false};
+    for (int k = 0; k < pixels; k++) {
+        const int at = k / width * columns + k % width;
+        if (ask[k]) wanted[at] = wanted[at + 1] = wanted[at + columns] = wanted[at + columns + 1] = true;
+    }
+    corner_materials(corner, job, tile, wanted);
+    for (int k = 0; k < pixels; k++) {
+        const size_t px = pixel_index(job, tile->x0 + k % width, tile->y0 + k / width);
+        if (ask[k] && corners_differ(corner + k / width * columns + k % width, columns, job->picture->material[px]))
+            flags[k] |= refine_ground;
+    }
+}
+
+void refine_flags(uint8_t flags[hits_capacity], const Job *job, const Tile *tile)
+{
+    enum { side = tile_side_samples };
+    const View *view = &job->request->view;
+    const int   x0 = tile->x0, y0 = tile->y0, width = tile->x1 - x0;
     uint32_t across[side + 1] = {0}, above[side] = {0}, below[side] = {0}; /* across[k]: pixels x0 + k - 1 and x0 + k */
-    uint32_t alike[side];
-    uint16_t corner[corner_capacity];
+    bool     ask[hits_capacity], any = false;
     /* the steps that give up rays refine no borders of ground */
     const bool grounds = job->scene.world->landscape && job->request->samples == 1 &&
                          job->request->bands & ~(1u << BAND_RADAR) && job->request->sampling == SAMPLING_ALL;
-    const int left = x0 > 0 ? x0 - 1 : 0, right = x1 < view->width ? x1 : view->width - 1;
-    if (grounds) corner_materials(corner, job, x0, y0, x1, y1);
-    if (y0 > 0) find_plain(above, job, pixel_index(job, x0, y0 - 1), pixel_index(job, x0, y0), width);
-    for (int y = y0; y < y1; y++) {
-        find_plain(across + left + 1 - x0, job, pixel_index(job, left, y), pixel_index(job, left + 1, y), right - left);
-        if (y + 1 < view->height) find_plain(below, job, pixel_index(job, x0, y), pixel_index(job, x0, y + 1), width);
-        for (int k = 0; k < width; k++) alike[k] = across[k] & across[k + 1] & above[k] & below[k];
-        for (int x = x0; x < x1; x++) {
-            const int       k = x - x0;
-            const size_t    px = pixel_index(job, x, y);
-            const uint32_t *plain[4] = {&across[k], &across[k + 1], &above[k], &below[k]};
-            unsigned        flag = job->refine[px];
-            bool            leafy = picture_shows_plant(job->picture, px);
-            for (int n = 0; n < 4 && !alike[k] && !(flag & refine_all); n++) {
-                const int xb = x + beside[n][0], yb = y + beside[n][1];
-                if (xb < 0 || yb < 0 || xb >= view->width || yb >= view->height || *plain[n]) continue;
-                leafy |= picture_shows_plant(job->picture, pixel_index(job, xb, yb));
-                flag |= edge_between(job, x, y, xb, yb, flag & refine_leaves);
-            }
-            if (grounds && !(flag & refine_all) && job->picture->cover[px] != SURFACE_NONE &&
-                corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
-                flag |= refine_ground;
-            if (leafy && !(flag & refine_leaves)) flag &= ~(unsigned)(refine_sun | refine_ground);
+    const int left = x0 > 0 ? x0 - 1 : 0, right = tile->x1 < view->width ? tile->x1 : view->width - 1;
+    if (y0 > 0) find_pairs(above, job, pixel_index(job, x0, y0 - 1), pixel_index(job, x0, y0), width);
+    for (int y = y0; y < tile->y1; y++) {
+        find_pairs(across + left + 1 - x0, job, pixel_index(job, left, y), pixel_index(job, left + 1, y), right - left);
+        if (y + 1 < view->height) find_pairs(below, job, pixel_index(job, x0, y), pixel_index(job, x0, y + 1), width);
+        for (int k = 0; k < width; k++) {
+            const int        x = x0 + k, at = (y - y0) * width + k;
+            const PixelPairs pairs = {{across[k], across[k + 1], above[k], below[k]}};
+            bool             leafy;
+            unsigned         flag = flags_of_pairs(&leafy, job, x, y, &pairs);
+            const bool       smoothed = leafy && !(flag & refine_leaves);
+            if (smoothed) flag &= ~(unsigned)(refine_sun | refine_ground);
             if (job->request->samples > 1)
                 flag &= ~(unsigned)(refine_step | refine_plants | refine_ground); /* all flags set */
-            flags[(y - y0) * width + k] = (uint8_t)(flag & ~(unsigned)refine_leaves);
+            ask[at] = grounds && !(flag & refine_all) && !smoothed &&
+                      job->picture->cover[pixel_index(job, x, y)] != SURFACE_NONE;
+            any |= ask[at];
+            flags[at] = (uint8_t)(flag & ~(unsigned)refine_leaves);
         }
-        if (y + 1 < y1) memcpy(above, below, sizeof above);
+        if (y + 1 < tile->y1) memcpy(above, below, sizeof above);
     }
+    if (any) mark_borders(flags, ask, job, tile);
 }
 
 /* ---- ground --------------------------------------------------------------------------------- */

@@ -275,7 +275,7 @@ typedef enum RefineFlag {
 void mark_boxes(Job *job);
 /* The flags of a tile's pixels, row by row, including those marked. Reads the truth planes and the plane of
  * sunlight. */
-void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, int x1, int y1);
+void refine_flags(uint8_t flags[hits_capacity], const Job *job, const Tile *tile);
 /* The block's pixels, with rays, hits and sun restored from the planes; all hits are ground; n is 1. */
 void recall_ground(Worker *w, const Job *job);
 
@@ -288,9 +288,10 @@ enum {
     material_unknown = 0xffff,
 };
 
-/* Materials of the ground at the corners of the pixels x0 .. x1 - 1, y0 .. y1 - 1, (x1 - x0 + 1) a row;
+/* Materials of the ground at the wanted corners of a tile's pixels, one column and one row more than it has pixels;
  * material_unknown where the pixel right and below shows no ground. Reads the truth planes. */
-void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int y0, int x1, int y1);
+void corner_materials(uint16_t out[corner_capacity], const Job *job, const Tile *tile,
+                      const bool wanted[corner_capacity]);
 /* Whether one of the four corners from `corner` on is of another material than that. columns: corners a row. */
 bool corners_differ(const uint16_t *corner, int columns, uint32_t material);
 /* Splits the block's samples of ground by the surface classes within their squares of 1 / n px, several returns each:

@@ -19,19 +19,22 @@ static double plane_through(const double n[3], const double d_hit[3], double ran
 
 /* ---- which pixels ---------------------------------------------------------------------------- */
 
-/* Where the corners x0 .. x1 of row y are on the ground; NaN: no ground there. */
-static void place_corners(double *x_m, double *y_m, const Job *job, int x0, int x1, int y)
+enum { corners_together = 128 };
+
+/* Where corners are on the ground; NaN: no ground there. corner: [count], numbered row by row from the tile's first. */
+static void place_corners(double *x_m, double *y_m, const Job *job, const Tile *tile, const uint16_t *corner, int count)
 {
-    enum { most = tile_side_samples + 1 };
+    enum { most = corners_together };
     const View    *view = &job->request->view;
     const Picture *p = job->picture;
-    const int      columns = x1 - x0 + 1, py = y < view->height ? y : view->height - 1;
+    const int      columns = tile->x1 - tile->x0 + 1;
     double         column_px[2][most], row_px[2][most], hit[3][most], way[3][most], n[3][most], hit_m[most];
     bool           ground[most];
-    for (int k = 0; k < columns; k++) {
+    for (int k = 0; k < count; k++) {
         /* the pixel below and to the right of the corner gives the plane of the ground; at the picture's end the last
          */
-        const int    x = x0 + k, px = x < view->width ? x : view->width - 1;
+        const int    x = tile->x0 + corner[k] % columns, px = x < view->width ? x : view->width - 1;
+        const int    y = tile->y0 + corner[k] / columns, py = y < view->height ? y : view->height - 1;
         const size_t at = pixel_index(job, px, py);
         column_px[0][k] = px + 0.5, row_px[0][k] = py + 0.5;
         column_px[1][k] = x, row_px[1][k] = y;
@@ -39,9 +42,9 @@ static void place_corners(double *x_m, double *y_m, const Job *job, int x0, int 
         hit_m[k] = (double)p->range_m[at];
         ground[k] = p->cover[at] != SURFACE_NONE;
     }
-    view_rays((double *const[3]){hit[0], hit[1], hit[2]}, view, columns, column_px[0], row_px[0]);
-    view_rays((double *const[3]){way[0], way[1], way[2]}, view, columns, column_px[1], row_px[1]);
-    for (int k = 0; k < columns; k++) { /* plane_through */
+    view_rays((double *const[3]){hit[0], hit[1], hit[2]}, view, count, column_px[0], row_px[0]);
+    view_rays((double *const[3]){way[0], way[1], way[2]}, view, count, column_px[1], row_px[1]);
+    for (int k = 0; k < count; k++) { /* plane_through */
         const double above = n[0][k] * hit[0][k] + n[1][k] * hit[1][k] + n[2][k] * hit[2][k];
         const double along = n[0][k] * way[0][k] + n[1][k] * way[1][k] + n[2][k] * way[2][k];
         const double at_m = hit_m[k] * above / along,
@@ -51,18 +54,22 @@ static void place_corners(double *x_m, double *y_m, const Job *job, int x0, int 
     }
 }
 
-void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int y0, int x1, int y1)
+void corner_materials(uint16_t out[corner_capacity], const Job *job, const Tile *tile,
+                      const bool wanted[corner_capacity])
 {
     const Materials *materials = &job->scene.world->materials;
-    const int        columns = x1 - x0 + 1;
-    double           x_m[tile_side_samples + 1], y_m[tile_side_samples + 1];
-    uint8_t          surface[tile_side_samples + 1];
-    for (int y = y0; y <= y1; y++) {
-        place_corners(x_m, y_m, job, x0, x1, y);
-        landscape_surfaces(surface, job->scene.world->landscape, columns, x_m, y_m);
-        for (int k = 0; k < columns; k++)
-            out[(y - y0) * columns + k] =
-                surface[k] == SURFACE_NONE ? material_unknown : (uint16_t)materials->surface[surface[k]];
+    const int        corners = (tile->x1 - tile->x0 + 1) * (tile->y1 - tile->y0 + 1);
+    double           x_m[corners_together], y_m[corners_together];
+    uint8_t          surface[corners_together];
+    uint16_t         corner[corners_together];
+    for (int at = 0; at < corners;) {
+        int count = 0;
+        for (; at < corners && count < corners_together; at++)
+            if (wanted[at]) corner[count++] = (uint16_t)at;
+        place_corners(x_m, y_m, job, tile, corner, count);
+        landscape_surfaces(surface, job->scene.world->landscape, count, x_m, y_m);
+        for (int k = 0; k < count; k++)
+            out[corner[k]] = surface[k] == SURFACE_NONE ? material_unknown : (uint16_t)materials->surface[surface[k]];
     }
 }
 
@@ -138,6 +145,26 @@ static void seen_normal(double n[3], const Visibility *v, const Hits *hits, int 
     for (int c = 0; c < 3; c++) n[c] = (double)hits->n_geo[c][i] - (c < 2 ? twice * d_enu[c] : 0);
 }
 
+/* Counts the points of each class, and sums their places. Neighbours are mostly of one class. */
+static void count_places(GroundPatch found[SURFACE_COUNT], const SquarePlaces *square, const uint8_t *surface,
+                         int places)
+{
+    for (int k = 0; k < places;) {
+        const uint8_t here = surface[k];
+        GroundPatch  *to = &found[here < SURFACE_COUNT ? here : SURFACE_NONE], sum = *to;
+        for (; k < places && surface[k] == here; k++) {
+            sum.count++;
+            sum.place[0] += square->at_px[0][k], sum.place[1] += square->at_px[1][k];
+        }
+        *to = sum;
+    }
+}
+
+static bool all_alike(const uint8_t *surface, int places)
+{
+    return memcmp(surface, surface + 1, (size_t)places - 1) == 0;
+}
+
 /* Classes of the points over a square of 1 / n px about a sample's position, the most frequent first; the rest is
  * counted to the first. Returns their number, 1 .. most; 0: no ground there. */
 static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, const Job *job, int i,
@@ -157,11 +184,11 @@ static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, con
     if (view_has_lens(view)) places_through_lens(&square, view, n, d_hit, hits->range_m[i], places);
     else places_on_plane(&square, view, n, d_hit, hits->range_m[i], centre_px, places);
     landscape_surfaces_square(surface, job->scene.world->landscape, side, square.x_m, square.y_m);
-    for (int k = 0; k < places; k++) {
-        GroundPatch *of = &found[surface[k] < SURFACE_COUNT ? surface[k] : SURFACE_NONE];
-        of->count++;
-        of->place[0] += square.at_px[0][k], of->place[1] += square.at_px[1][k];
+    if (all_alike(surface, places)) {
+        patch[0] = (GroundPatch){.surface = surface[0], .count = places};
+        return surface[0] > SURFACE_NONE && surface[0] < SURFACE_COUNT;
     }
+    count_places(found, &square, surface, places);
     int count = 0, total = 0;
     for (; count < most; count++) {
         int best = 0; /* of equals the first class */

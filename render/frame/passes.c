@@ -194,10 +194,18 @@ float *block_values(const Worker *w, const Job *job, int plane)
     return NULL;
 }
 
+/* Whether some hit of the block shows an entity. */
+static bool shows_entity(const Hits *hits)
+{
+    uint32_t any = 0;
+    for (int i = 0; i < hits->count; i++) any |= hits->entity[i];
+    return any != 0;
+}
+
 void block_add(Worker *w, const Job *job, double share)
 {
     const Samples *s = &w->samples;
-    if (job->picture->target) {
+    if (job->picture->target && shows_entity(&s->hits)) {
         target_sums_view(&w->sums, &w->block, &job->request->view);
         for (int plane = 0; plane < picture_plane_count; plane++) {
             const float *value = block_values(w, job, plane);

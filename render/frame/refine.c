@@ -229,7 +229,7 @@ void refine_tile(void *user, int worker, int task)
     };
     uint8_t flags_of[hits_capacity];
     if (!may_refine(job, &tile)) return;
-    refine_flags(flags_of, job, tile.x0, tile.y0, tile.x1, tile.y1);
+    refine_flags(flags_of, job, &tile);
     for (int y = tile.y0; y < tile.y1; y++)
         for (int x = tile.x0; x < tile.x1; x++) {
             const size_t px = pixel_index(job, x, y);

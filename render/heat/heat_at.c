@@ -67,25 +67,52 @@ double heat_ground_k(const HeatNow *now, int kind, const double n_enu[3], double
     return temp_k[0];
 }
 
-double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uint8_t *shadow)
+/* Sums over the slots, eight side by side: of the past sun on a normal, and of that in the shade, times 255. */
+static inline void past_sums(F32x8 *all, F32x8 *taken, const HeatNow *now, int kind, const double n_enu[3],
+                             const uint8_t *shadow)
 {
     const float *weight = now->table.slot_k[kind];
     const F32x8  nx = f32x8_set(n_enu[0]), ny = f32x8_set(n_enu[1]), nz = f32x8_set(n_enu[2]), none = f32x8_set(0);
-    F32x8        all = none, taken = none;
-    float        sum[2][8];
+    *all = *taken = none;
     for (int s = 0; s < now->slots; s += 8) {
         const F32x8 along =
             f32x8_fma(nx, f32x8_load(now->slot_d_enu[0] + s),
                       f32x8_fma(ny, f32x8_load(now->slot_d_enu[1] + s), nz * f32x8_load(now->slot_d_enu[2] + s)));
         const F32x8 k = f32x8_max(along, none) * f32x8_load(weight + s);
-        all = all + k;
-        taken = f32x8_fma(k, f32x8_of_ints(i32x8_of_bytes(shadow + s)), taken);
+        *all = *all + k;
+        *taken = f32x8_fma(k, f32x8_of_ints(i32x8_of_bytes(shadow + s)), *taken);
     }
+}
+
+double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uint8_t *shadow)
+{
+    F32x8 all, taken;
+    float sum[2][8];
+    past_sums(&all, &taken, now, kind, n_enu, shadow);
     f32x8_store(sum[0], all);
     f32x8_store(sum[1], taken);
     double total = 0, lost = 0;
     for (int i = 0; i < 8; i++) total += (double)sum[0][i], lost += (double)sum[1][i];
     return total > 1e-3 ? fmin(lost / (255 * total), 1) : 0; /* both are rounded */
+}
+
+/* heat_taken of places side by side, to the same bits. */
+static void find_taken(HeatPlaces *place, const HeatNow *now, uint8_t shadow[heat_lanes][shadow_most_slots])
+{
+    F32x8 sum[8]; /* of each lane all, then what was taken; turned, lanes by eighth */
+    F64x4 total = f64x4_set(0), lost = total;
+    _Static_assert(heat_lanes == 4, "sums of four lanes, twice, are eight");
+    for (int k = 0; k < heat_lanes; k++) {
+        const double n_enu[3] = {place->n_enu[0][k], place->n_enu[1][k], place->n_enu[2][k]};
+        past_sums(&sum[k], &sum[heat_lanes + k], now, place->kind[k], n_enu, shadow[k]);
+    }
+    f32x8_transpose(sum);
+    for (int i = 0; i < 8; i++) {
+        total = total + _mm256_cvtps_pd(_mm256_castps256_ps128(sum[i]));
+        lost = lost + _mm256_cvtps_pd(_mm256_extractf128_ps(sum[i], 1));
+    }
+    const F64x4 share = f64x4_min(lost / (f64x4_set(255) * total), f64x4_set(1));
+    f64x4_storeu(place->taken, f64x4_and(f64x4_less(f64x4_set(1e-3), total), share));
 }
 
 void heat_scales(double *sun, double *sky, const HeatNow *now, int kind)
@@ -141,17 +168,15 @@ void heat_scene_grounds_k(double temp_k[heat_lanes], double lifted_k[heat_lanes]
 {
     const HeatNow *now = scene->now;
     HeatPlaces     place;
+    uint8_t        shadow[heat_lanes][shadow_most_slots];
     memcpy(place.n_enu, at->n_enu, sizeof place.n_enu);
     memcpy(place.dark, at->dark, sizeof place.dark);
     for (int k = 0; k < heat_lanes; k++) {
-        uint8_t shadow[shadow_most_slots];
         place.kind[k] = now->kind_of[at->surface[k]];
         place.open[k] = 1, place.taken[k] = 0;
-        if (!scene->shadow) continue;
-        heat_shadow_at(shadow, &place.open[k], scene->shadow, at->p_enu[0][k], at->p_enu[1][k]);
-        const double n_enu[3] = {at->n_enu[0][k], at->n_enu[1][k], at->n_enu[2][k]};
-        place.taken[k] = heat_taken(now, place.kind[k], n_enu, shadow);
+        if (scene->shadow) heat_shadow_at(shadow[k], &place.open[k], scene->shadow, at->p_enu[0][k], at->p_enu[1][k]);
     }
+    if (scene->shadow) find_taken(&place, now, shadow);
     heat_grounds_k(temp_k, now, &place);
     for (int k = 0; k < heat_lanes; k++) {
         const double unlit_k = (double)now->table.dark_k[place.kind[k]][heat_ups - 1];

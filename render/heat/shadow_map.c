@@ -1,5 +1,6 @@
 /* render/heat/shadow_map.c: a map of what shades the ground, for several directions of the sun (heat.h). */
 #include "render/heat/heat.h"
+#include "pitviper_simd.h"
 
 #include <stdlib.h>
 
@@ -256,6 +257,18 @@ void heat_shadow_destroy(ShadowMap *m)
     free(m);
 }
 
+/* lround of 0 .. 2^31, which compiles to a call. */
+static inline unsigned nearest(double x)
+{
+    const unsigned whole = (unsigned)x;
+    return whole + (unsigned)(x - whole >= 0.5);
+}
+
+static inline __m128i eight_shares(const uint8_t *of, unsigned weight)
+{
+    return _mm_mullo_epi16(_mm_cvtepu8_epi16(_mm_loadl_epi64((const __m128i *)of)), _mm_set1_epi16((short)weight));
+}
+
 void heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const ShadowMap *m, double x_m, double y_m)
 {
     const double x = (x_m - m->x0_m) / m->cell_m, y = (y_m - m->y0_m) / m->cell_m;
@@ -264,13 +277,17 @@ void heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const Shado
         *open = 1;
         return;
     }
-    const int      i = (int)fmin(x, m->nx - 2), j = (int)fmin(y, m->ny - 2);
-    const unsigned u = (unsigned)lround(16 * (x - i)), v = (unsigned)lround(16 * (y - j));
+    const int      i = x < m->nx - 2 ? (int)x : m->nx - 2, j = y < m->ny - 2 ? (int)y : m->ny - 2;
+    const unsigned u = nearest(16 * (x - i)), v = nearest(16 * (y - j));
     const unsigned w00 = (16 - u) * (16 - v), w01 = u * (16 - v), w10 = (16 - u) * v, w11 = u * v; /* 256 in all */
     const size_t cell = (size_t)j * (size_t)m->nx + (size_t)i, above = cell + (size_t)m->nx, stride = (size_t)m->stride;
     const uint8_t *a = m->shadow + cell * stride, *b = a + stride, *c = m->shadow + above * stride, *d = c + stride;
-    for (size_t s = 0; s < stride; s++)
-        shadow[s] = (uint8_t)((a[s] * w00 + b[s] * w01 + c[s] * w10 + d[s] * w11 + 128) >> 8);
+    for (size_t s = 0; s < stride; s += 8) { /* sums of 255 times 256 and 128 fit in 16 bits */
+        const __m128i sum = _mm_add_epi16(_mm_add_epi16(eight_shares(a + s, w00), eight_shares(b + s, w01)),
+                                          _mm_add_epi16(eight_shares(c + s, w10), eight_shares(d + s, w11)));
+        const __m128i share = _mm_srli_epi16(_mm_add_epi16(sum, _mm_set1_epi16(128)), 8);
+        _mm_storel_epi64((__m128i *)(shadow + s), _mm_packus_epi16(share, share));
+    }
     *open = (m->open[cell] * w00 + m->open[cell + 1] * w01 + m->open[above] * w10 + m->open[above + 1] * w11) /
             (255.0 * 256);
 }

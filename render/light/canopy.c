@@ -185,27 +185,43 @@ static double above_cell(const CanopyCell *cell, double height_m)
     return leaf_area_step * cell->leaf_area * (height_m <= base ? 1 : (top - height_m) / (top - base));
 }
 
-/* Straight between the middles of cells. pages: their plants too. */
-static double leaf_area_above(const Canopy *c, double x_m, double y_m, double height_m, bool pages)
+/* The cells with leaves about a place, and their shares of it: straight between the middles of cells. */
+typedef struct CellsAbout {
+    int               count;
+    const CanopyCell *cell[4];
+    double            share[4];
+} CellsAbout;
+
+/* pages: their plants too. */
+static void cells_about(CellsAbout *out, const Canopy *c, double x_m, double y_m, bool pages)
 {
     const double x = (x_m - c->x0_m) / canopy_cell_m - 0.5, y = (y_m - c->y0_m) / canopy_cell_m - 0.5;
     const double i = floor(x), j = floor(y);
-    double       sum = 0;
-    if (!pages && !(i >= 0 && j >= 0 && i < c->nx - 1 && j < c->ny - 1)) return 0;
+    out->count = 0;
+    if (!pages && !(i >= 0 && j >= 0 && i < c->nx - 1 && j < c->ny - 1)) return;
     for (int k = 0; k < 4; k++) {
-        const double      share = (k & 1 ? x - i : 1 - (x - i)) * (k & 2 ? y - j : 1 - (y - j));
         const double      a = i + (k & 1), b = j + (k >> 1);
         const CanopyCell *cell = NULL;
         if (a >= 0 && b >= 0 && a < c->nx && b < c->ny) cell = &c->cell[(size_t)b * (size_t)c->nx + (size_t)a];
         if (pages && (!cell || cell->leaf_area == 0)) cell = canopy_page_cell(c, a, b);
-        if (cell) sum += share * above_cell(cell, height_m);
+        if (!cell || cell->leaf_area == 0) continue;
+        out->share[out->count] = (k & 1 ? x - i : 1 - (x - i)) * (k & 2 ? y - j : 1 - (y - j));
+        out->cell[out->count++] = cell;
     }
+}
+
+static double leaf_area_of(const CellsAbout *about, double height_m)
+{
+    double sum = 0;
+    for (int k = 0; k < about->count; k++) sum += about->share[k] * above_cell(about->cell[k], height_m);
     return sum;
 }
 
 double canopy_leaf_area_above(const Canopy *c, double x_m, double y_m, double height_m)
 {
-    return leaf_area_above(c, x_m, y_m, height_m, false);
+    CellsAbout about;
+    cells_about(&about, c, x_m, y_m, false);
+    return leaf_area_of(&about, height_m);
 }
 
 void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
@@ -221,44 +237,56 @@ void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
 
 /* ---- hits ------------------------------------------------------------------------------------- */
 
-static bool place_at(CanopyPlace *out, const Canopy *c, const double p_m[2], double height_m, double sin_sun,
-                     bool pages)
+/* As fmin and fmax for finite numbers; those compile to calls. */
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+static inline double larger(double a, double b) { return a > b ? a : b; }
+
+static const CanopyPlace open_place = {1, 1, 1, 1, 1};
+
+/* What a leaf area lets through of a sun of this slant; exp(0) is 1, as above most crowns. */
+static double sun_through(double slant, double leaf_area) { return leaf_area > 0 ? exp(-slant * leaf_area) : 1; }
+
+/* The place of a leaf area of `all`, with so much of it above. */
+static void place_of(CanopyPlace *out, const Canopy *c, double all, double above, double sin_sun)
 {
-    const double all = leaf_area_above(c, p_m[0], p_m[1], 0, pages);
-    const double above = height_m > 0 ? leaf_area_above(c, p_m[0], p_m[1], height_m, pages) : all;
-    const double slant = 0.5 / fmax(sin_sun, 0.05);
-    if (!(all > 0)) {
-        *out = (CanopyPlace){1, 1, 1, 1, 1};
-        return false;
-    }
-    *out = (CanopyPlace){.up = gap_at(c, 0.5 * above),
-                         .down = gap_at(c, 0.5 * fmax(all - above, 0)),
-                         .up_from_ground = gap_at(c, 0.5 * all),
-                         .sun_here = exp(-slant * above),
-                         .sun_on_ground = exp(-slant * all)};
-    return true;
+    const double slant = 0.5 / larger(sin_sun, 0.05);
+    out->up_from_ground = gap_at(c, 0.5 * all);
+    out->up = above == all ? out->up_from_ground : gap_at(c, 0.5 * above);
+    out->down = gap_at(c, 0.5 * larger(all - above, 0));
+    out->sun_on_ground = sun_through(slant, all);
+    out->sun_here = above == all ? out->sun_on_ground : sun_through(slant, above);
 }
 
 bool canopy_place(CanopyPlace *out, const Canopy *c, double x_m, double y_m, double height_m, double sin_sun)
 {
-    return place_at(out, c, (const double[2]){x_m, y_m}, height_m, sin_sun, false);
+    CellsAbout about;
+    cells_about(&about, c, x_m, y_m, false);
+    const double all = leaf_area_of(&about, 0);
+    *out = open_place;
+    if (!(all > 0)) return false;
+    place_of(out, c, all, height_m > 0 ? leaf_area_of(&about, height_m) : all, sin_sun);
+    return true;
 }
 
 void canopy_place_of_plant(CanopyPlace *p, const Canopy *c)
 {
-    p->up = fmin(c->open_up, p->up), p->down = fmin(c->open_down, p->down), p->sun_here = fmin(c->open_up, p->sun_here);
+    p->up = smaller(c->open_up, p->up), p->down = smaller(c->open_down, p->down);
+    p->sun_here = smaller(c->open_up, p->sun_here);
 }
 
-/* half: of what a surface scatters. */
-static inline double exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *p, double half,
-                              double sun_w_m2, double sky_w_m2, double sin_sun, double ground_rho)
+/* Light of a channel over a canopy; half: of what a surface of it scatters. */
+typedef struct Overhead {
+    double half, sun_w_m2, sky_w_m2, sin_sun, ground_rho;
+} Overhead;
+
+/* M of canopy.h. p: of a leaf or branch (canopy_place_of_plant); sun_here 0 where the sun is down. */
+static inline double exitance(double *on_ground_w_m2, const CanopyPlace *p, const Overhead *o)
 {
-    const double up = fmin(c->open_up, p->up), down = fmin(c->open_down, p->down);
-    const double from_above = sun_w_m2 * sin_sun * p->sun_on_ground + sky_w_m2 * p->up_from_ground;
-    const double on_leaf = 0.5 * sun_w_m2 * (sin_sun > 0 ? fmin(c->open_up, p->sun_here) : 0);
-    const double from_below = down * ground_rho, shaded = 1 - p->up_from_ground;
-    const double leaves = half * (on_leaf + up * sky_w_m2 + from_below * from_above) /
-                          fmax(1 - half * (2 - up - down + from_below * shaded), 1e-6);
+    const double from_above = o->sun_w_m2 * o->sin_sun * p->sun_on_ground + o->sky_w_m2 * p->up_from_ground;
+    const double on_leaf = 0.5 * o->sun_w_m2 * p->sun_here;
+    const double from_below = p->down * o->ground_rho, shaded = 1 - p->up_from_ground;
+    const double lost = 1 - o->half * (2 - p->up - p->down + from_below * shaded);
+    const double leaves = o->half * (on_leaf + p->up * o->sky_w_m2 + from_below * from_above) / larger(lost, 1e-6);
     *on_ground_w_m2 = from_above + shaded * leaves;
     return leaves;
 }
@@ -266,7 +294,50 @@ static inline double exitance(double *on_ground_w_m2, const Canopy *c, const Can
 double canopy_exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *place, int channel, double sun_w_m2,
                        double sky_w_m2, double sin_sun, double ground_rho)
 {
-    return exitance(on_ground_w_m2, c, place, 0.5 * c->scattered[channel], sun_w_m2, sky_w_m2, sin_sun, ground_rho);
+    const Overhead o = {0.5 * c->scattered[channel], sun_w_m2, sky_w_m2, sin_sun, ground_rho};
+    CanopyPlace    p = *place;
+    canopy_place_of_plant(&p, c);
+    if (!(sin_sun > 0)) p.sun_here = 0;
+    return exitance(on_ground_w_m2, &p, &o);
+}
+
+/* Places of a block's hits, as of plants, in arrays. */
+typedef struct Places {
+    double up[hits_capacity], down[hits_capacity], up_from_ground[hits_capacity];
+    double sun_here[hits_capacity], sun_on_ground[hits_capacity];
+} Places;
+
+static void put_place(Places *to, int i, const CanopyPlace *place, const Canopy *c, double sin_sun)
+{
+    CanopyPlace p = *place;
+    canopy_place_of_plant(&p, c);
+    to->up[i] = p.up, to->down[i] = p.down, to->up_from_ground[i] = p.up_from_ground;
+    to->sun_here[i] = sin_sun > 0 ? p.sun_here : 0, to->sun_on_ground[i] = p.sun_on_ground;
+}
+
+static void light_of(float *restrict leaves_w_m2, float *restrict ground, const Places *places, int count,
+                     const Overhead *over)
+{
+    const Overhead o = *over;
+    const double   open_w_m2 = o.sun_w_m2 * o.sin_sun + o.sky_w_m2;
+    for (int i = 0; i < count; i++) {
+        const CanopyPlace p = {places->up[i], places->down[i], places->up_from_ground[i], places->sun_here[i],
+                               places->sun_on_ground[i]};
+        double            on_ground_w_m2;
+        leaves_w_m2[i] = (float)exitance(&on_ground_w_m2, &p, &o);
+        ground[i] = (float)(on_ground_w_m2 / open_w_m2);
+    }
+    for (int i = 0; i < count && !(open_w_m2 > 0); i++) ground[i] = 1;
+}
+
+/* Asks for the posts about a place, of the finest level that has it: they lie far apart in memory. */
+static void ask_for_height(const Elevation *elevation, double x_m, double y_m)
+{
+    const ElevationLevel *level = &elevation->level[0];
+    const double          i = (x_m - level->x0_m) / level->spacing_m, j = (y_m - level->y0_m) / level->spacing_m;
+    if (elevation->level_count == 0 || !(i >= 0 && j >= 0 && i < level->nx - 1 && j < level->ny - 1)) return;
+    const uint16_t *post = level->stored + elevation_stored_index(level, (int)i, (int)j);
+    __builtin_prefetch(post), __builtin_prefetch(post + elevation_tile_side);
 }
 
 bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape, const Daylight *light,
@@ -274,35 +345,35 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
 {
     const double sin_sun = fmax(light->sun_d_enu[2], 0), reach_m = canopy_pages_reach_m(c);
     bool         any = false;
-    CanopyPlace  place[hits_capacity];
+    Places       places;
     for (int i = 0; i < hits->count; i++) {
+        const int next = i + 8;
+        if (landscape && next < hits->count && hits->kind[next] == hit_plant)
+            ask_for_height(&landscape->elevation, hits->p_enu[0][next], hits->p_enu[1][next]);
         const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
-        double       height_m = 0;
-        place[i] = (CanopyPlace){1, 1, 1, 1, 1};
-        if (!(hits->range_m[i] < INFINITY)) continue;
-        if (hits->kind[i] != hit_ground && landscape)
-            height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
-        const bool pages = reach_m > 0 && (hits->kind[i] == hit_plant || hits->range_m[i] < reach_m);
-        any |= place_at(&place[i], c, (const double[2]){x_m, y_m}, isfinite(height_m) ? height_m : 0, sin_sun, pages) |
-               (hits->kind[i] == hit_plant);
+        const bool   plant = hits->kind[i] == hit_plant;
+        CanopyPlace  place = open_place;
+        CellsAbout   about = {.count = 0};
+        if (hits->range_m[i] < INFINITY)
+            cells_about(&about, c, x_m, y_m, reach_m > 0 && (plant || hits->range_m[i] < reach_m));
+        const double all = leaf_area_of(&about, 0);
+        if (all > 0) {
+            double height_m = 0;
+            if (hits->kind[i] != hit_ground && landscape)
+                height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
+            const bool aloft = isfinite(height_m) && height_m > 0;
+            place_of(&place, c, all, aloft ? leaf_area_of(&about, height_m) : all, sin_sun);
+        }
+        any |= all > 0 || (plant && hits->range_m[i] < INFINITY);
+        out->up[i] = (float)(plant ? smaller(place.up, (double)hits->open_up[i]) : place.up);
+        out->down[i] = (float)(plant ? smaller(place.down, (double)hits->open_down[i]) : place.down);
+        put_place(&places, i, &place, c, sin_sun);
     }
     if (!any) return false;
-    for (int i = 0; i < hits->count; i++) {
-        const bool plant = hits->kind[i] == hit_plant;
-        out->up[i] = (float)(plant ? fmin(place[i].up, (double)hits->open_up[i]) : place[i].up);
-        out->down[i] = (float)(plant ? fmin(place[i].down, (double)hits->open_down[i]) : place[i].down);
-    }
     for (int k = 0; k < optical_channel_count; k++) {
-        if (!(channels >> k & 1)) continue;
-        const double sun_w_m2 = light->sun_w_m2[k], sky_w_m2 = light->sky_w_m2[k], half = 0.5 * c->scattered[k];
-        const double open_w_m2 = sun_w_m2 * sin_sun + sky_w_m2;
-        for (int i = 0; i < hits->count; i++) {
-            double       from_above_and_leaves;
-            const double leaves = exitance(&from_above_and_leaves, c, &place[i], half, sun_w_m2, sky_w_m2, sin_sun,
-                                           (double)ground_rho[k]);
-            out->leaves_w_m2[k][i] = (float)leaves;
-            out->ground[k][i] = (float)(open_w_m2 > 0 ? from_above_and_leaves / open_w_m2 : 1);
-        }
+        const Overhead o = {0.5 * c->scattered[k], light->sun_w_m2[k], light->sky_w_m2[k], sin_sun,
+                            (double)ground_rho[k]};
+        if (channels >> k & 1) light_of(out->leaves_w_m2[k], out->ground[k], &places, hits->count, &o);
     }
     return true;
 }

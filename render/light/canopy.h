@@ -79,7 +79,8 @@ typedef struct CanopyLight {
     float leaves_w_m2[optical_channel_count][hits_capacity]; /* M */
 } CanopyLight;
 
-/* channels: 1 << optical_channel, others are ignored. False: no plants near any of the hits, and nothing written. */
+/* channels: 1 << optical_channel, others are ignored. False: no plants near any of the hits; *out has no
+ * meaning then. */
 bool canopy_light(CanopyLight *out, const Canopy *canopy, const Landscape *landscape, const Daylight *light,
                   const float ground_rho[optical_channel_count], const Hits *hits, unsigned channels);
 

@@ -12,6 +12,96 @@
 #include "pitviper.h"
 #include "terrain/weather/weather.h"
 
+/* ---- leaves ---------------------------------------------------------------------------------- */
+
+static const double heat_j_mol_k = 29.3, vapour_j_mol = 44000; /* of air; of water's evaporation */
+static const double pressure_pa = 101325;
+static const double leaf_m = 0.05, least_wind_mps = 0.3; /* free convection takes over below */
+
+/* What the balance has alike for every leaf of a frame. */
+typedef struct LeafAir {
+    double direct_w_m2, is_day, diffuse_w_m2, longwave_loss_w_m2, dryness;
+    double layer, layer_resistance; /* mol/(m2 s) of heat, one side; m2 s/mol of vapour */
+} LeafAir;
+
+static LeafAir leaf_air(const Daylight *light)
+{
+    const double wind_mps = fmax(light->weather.wind_mps, least_wind_mps);
+    const double layer = 1.4 * 0.135 * sqrt(wind_mps / (0.72 * leaf_m));
+    return (LeafAir){.direct_w_m2 = light->solar_direct_w_m2,
+                     .is_day = light->sun_d_enu[2] > 0,
+                     .diffuse_w_m2 = light->solar_diffuse_w_m2,
+                     .longwave_loss_w_m2 = light->longwave_loss_w_m2,
+                     .dryness = 1 - light->weather.humidity,
+                     .layer = layer,
+                     .layer_resistance = 1 / (1.09 * layer)};
+}
+
+/* Longwave emission of a kelvin more, W/(m2 K): 5 at 288 K. */
+static inline double emission_w_m2_k(double emissivity, double temp_k)
+{
+    return 4 * emissivity * 5.670374419184429e-8 * temp_k * temp_k * temp_k;
+}
+
+/* Of a leaf, or leaves in arrays: as thermal_leaf_k. */
+typedef struct Leaf {
+    double air_k, vapour_pa; /* vapour_pa: saturation over water there */
+    double open, lit, absorptance, emissivity;
+} Leaf;
+
+static inline double leaf_k(const LeafAir *a, Leaf leaf)
+{
+    const double sun_w_m2 = leaf.lit * 0.5 * a->direct_w_m2 * a->is_day + leaf.open * a->diffuse_w_m2;
+    const double light = sun_w_m2 / 250, full = light < 1 ? light : 1; /* by half of full sunlight */
+    const double stomata = 0.2 * (0.05 + 0.95 * full);
+    const double vapour = 1 / (1 / stomata + a->layer_resistance);
+    /* slope of the saturation, Pa/K: Tetens, as in Campbell & Norman (1998), eq. 3.8 */
+    const double c = leaf.air_k - 273.15, slope = leaf.vapour_pa * 17.502 * 240.97 / ((240.97 + c) * (240.97 + c));
+    const double gain = leaf.absorptance * sun_w_m2 - leaf.emissivity * a->longwave_loss_w_m2 * leaf.open -
+                        vapour_j_mol * vapour * a->dryness * leaf.vapour_pa / pressure_pa;
+    const double loss = 2 * heat_j_mol_k * a->layer + 2 * emission_w_m2_k(leaf.emissivity, leaf.air_k) +
+                        vapour_j_mol * vapour * slope / pressure_pa;
+    return leaf.air_k + gain / loss;
+}
+
+static inline double emissivity_of(const Material *m) { return 1 - (double)m->rho_lwir - (double)m->tau_lwir; }
+
+double thermal_leaf_k(const Daylight *light, const Material *m, double air_temp_k, double open, double lit)
+{
+    const LeafAir a = leaf_air(light);
+    return leaf_k(&a, (Leaf){.air_k = air_temp_k,
+                             .vapour_pa = weather_saturation_pa(air_temp_k),
+                             .open = open,
+                             .lit = lit,
+                             .absorptance = (double)m->solar_absorptance,
+                             .emissivity = emissivity_of(m)});
+}
+
+/* Leaves of a block, in arrays. */
+typedef struct Leaves {
+    int    count, hit[hits_capacity];
+    double air_k[hits_capacity], vapour_pa[hits_capacity], open[hits_capacity], lit[hits_capacity];
+    double absorptance[hits_capacity], emissivity[hits_capacity], temp_k[hits_capacity];
+} Leaves;
+
+static void leaves_add(Leaves *to, int hit, const Material *m, double air_k, double open, double lit)
+{
+    const int n = to->count++;
+    to->hit[n] = hit;
+    to->air_k[n] = air_k, to->open[n] = open, to->lit[n] = lit;
+    to->absorptance[n] = (double)m->solar_absorptance, to->emissivity[n] = emissivity_of(m);
+}
+
+static void leaves_k(float *temp_k, const Daylight *light, Leaves *l)
+{
+    const LeafAir a = leaf_air(light);
+    for (int n = 0; n < l->count; n++) l->vapour_pa[n] = weather_saturation_pa(l->air_k[n]);
+    for (int n = 0; n < l->count; n++)
+        l->temp_k[n] = leaf_k(
+            &a, (Leaf){l->air_k[n], l->vapour_pa[n], l->open[n], l->lit[n], l->absorptance[n], l->emissivity[n]});
+    for (int n = 0; n < l->count; n++) temp_k[l->hit[n]] = (float)l->temp_k[n];
+}
+
 /* ---- temperature -------------------------------------------------------------------------- */
 
 /* Temperature of a part at a hit, from the patches about it; that of the air where no patch is known. */
@@ -38,16 +128,12 @@ static F32x8 air_k8(const Air *air, const Hits *hits, int first)
     return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->light.weather.air_temp_k);
 }
 
-/* Temperature of a plant at a hit: a leaf follows the sun of the moment, wood the sun of the day (air->heat; where that
- * is NULL, wood is as warm as the air). */
-static double plant_k(const Air *air, const Material *m, int material, double air_k, const Hits *hits, int i,
-                      const float *sun)
+/* Temperature of wood at a hit, by the sun of the day (air->heat; where that is NULL, it is as warm as the air). */
+static double wood_k(const Air *air, int material, double air_k, const Hits *hits, int i)
 {
     const double n[3] = {(double)hits->n_enu[0][i], (double)hits->n_enu[1][i], (double)hits->n_enu[2][i]};
-    const double open = (double)hits->open_up[i];
-    if (material_is_leaf(m)) return thermal_leaf_k(&air->light, m, air_k, open, sun ? (double)sun[i] : open);
     if (!air->heat || air->heat->now->branches == 0) return air_k;
-    return heat_branch_k(air->heat->now, material, (double)hits->radius_m[i], n, open) + air_k -
+    return heat_branch_k(air->heat->now, material, (double)hits->radius_m[i], n, (double)hits->open_up[i]) + air_k -
            air->light.weather.air_temp_k;
 }
 
@@ -86,7 +172,9 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
                          const Hits *hits, const uint16_t *material, const float *sun, const float *photo,
                          const float *warmth_k)
 {
-    int ground[hits_capacity], grounds = 0;
+    int    ground[hits_capacity], grounds = 0;
+    Leaves leaves;
+    leaves.count = 0;
     for (int first = 0; first < hits->count; first += 8) {
         const int some = hits->count - first < 8 ? hits->count - first : 8;
         float     air_k[8];
@@ -97,8 +185,11 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
             const Material *m = &materials->material[material[i]];
             if (!(hits->range_m[i] < INFINITY)) {
                 temp_k[i] = NAN;
+            } else if (hits->kind[i] == hit_plant && material_is_leaf(m)) {
+                const double open = (double)hits->open_up[i];
+                leaves_add(&leaves, i, m, here_k, open, sun ? (double)sun[i] : open);
             } else if (hits->kind[i] == hit_plant) {
-                temp_k[i] = (float)plant_k(air, m, material[i], here_k, hits, i, sun);
+                temp_k[i] = (float)wood_k(air, material[i], here_k, hits, i);
             } else if (hits->entity[i]) {
                 temp_k[i] = (float)part_k(parts, here_k, hits, i);
             } else if (!air->heat || hits->surface[i] == SURFACE_NONE) {
@@ -109,6 +200,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
             }
         }
     }
+    leaves_k(temp_k, &air->light, &leaves);
     grounds_k(temp_k, air, hits, ground, grounds, photo, warmth_k);
 }
 
@@ -194,43 +286,4 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
         out[i] = (float)(emitted * v->transmittance[i] + reflected * v->air_transmittance[i] +
                          sunlit * v->sun_transmittance[i] + v->added_w_m2_sr[i]);
     }
-}
-
-/* ---- leaves ---------------------------------------------------------------------------------- */
-
-/* Longwave emission of a kelvin more, W/(m2 K): 5 at 288 K. */
-static inline double emission_w_m2_k(double emissivity, double temp_k)
-{
-    return 4 * emissivity * 5.670374419184429e-8 * temp_k * temp_k * temp_k;
-}
-
-static const double heat_j_mol_k = 29.3, vapour_j_mol = 44000; /* of air; of water's evaporation */
-static const double pressure_pa = 101325;
-static const double leaf_m = 0.05, least_wind_mps = 0.3; /* free convection takes over below */
-
-/* Saturation over water, Pa, and its slope, Pa/K: Tetens, as in Campbell & Norman (1998), eq. 3.8. */
-static double vapour_pa(double *slope, double temp_k)
-{
-    const double c = temp_k - 273.15, e = weather_saturation_pa(temp_k);
-    *slope = e * 17.502 * 240.97 / ((240.97 + c) * (240.97 + c));
-    return e;
-}
-
-double thermal_leaf_k(const Daylight *light, const Material *m, double air_temp_k, double open, double lit)
-{
-    const double wind_mps = fmax(light->weather.wind_mps, least_wind_mps);
-    const double layer = 1.4 * 0.135 * sqrt(wind_mps / (0.72 * leaf_m)); /* mol/(m2 s), one side */
-    const double sun_w_m2 =
-        lit * 0.5 * light->solar_direct_w_m2 * (light->sun_d_enu[2] > 0) + open * light->solar_diffuse_w_m2;
-    const double humidity = light->weather.humidity;
-    const double stomata = 0.2 * (0.05 + 0.95 * fmin(sun_w_m2 / 250, 1)); /* full by half of full sunlight */
-    const double vapour = 1 / (1 / stomata + 1 / (1.09 * layer));
-    double       slope;
-    const double e = vapour_pa(&slope, air_temp_k);
-    const double emissivity = 1 - (double)m->rho_lwir - (double)m->tau_lwir;
-    const double gain = (double)m->solar_absorptance * sun_w_m2 - emissivity * light->longwave_loss_w_m2 * open -
-                        vapour_j_mol * vapour * (1 - humidity) * e / pressure_pa;
-    const double loss = 2 * heat_j_mol_k * layer + 2 * emission_w_m2_k(emissivity, air_temp_k) +
-                        vapour_j_mol * vapour * slope / pressure_pa;
-    return air_temp_k + gain / loss;
 }

@@ -173,9 +173,10 @@ void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int
         invented_nodes(&nodes, &cover->invented, &landscape->elevation, side * side, x_m, y_m);
     for (int pass = 0; pass == 0 || (pass == 1 && differ); pass++) {
         int count = 0;
-        for (int k = 0; k < side * side; k++)
-            if (looks_first(side, k / side, k % side) == (pass == 0))
-                place[count] = k, x[count] = x_m[k], y[count++] = y_m[k];
+        for (int row = 0, k = 0; row < side; row++)
+            for (int column = 0; column < side; column++, k++)
+                if (looks_first(side, row, column) == (pass == 0))
+                    place[count] = k, x[count] = x_m[k], y[count++] = y_m[k];
         find_surfaces(found, landscape, &nodes, count, x, y);
         for (int k = 0; k < count; k++) surface[place[k]] = found[k], differ |= found[k] != found[0];
     }

@@ -323,8 +323,18 @@ static const double slow_long_m = 12, slow_short_m = 4;
 
 static void span_of(double *low, double *high, int count, const double *v_m)
 {
+    F64x4 least = f64x4_set(INFINITY), most = f64x4_set(-INFINITY);
+    int   k = 0;
+    for (; k + 4 <= count; k += 4) {
+        least = f64x4_min(f64x4_loadu(v_m + k), least); /* NaN: as they are */
+        most = f64x4_max(f64x4_loadu(v_m + k), most);
+    }
+    double end[2][4];
+    f64x4_storeu(end[0], least), f64x4_storeu(end[1], most);
     *low = INFINITY, *high = -INFINITY;
-    for (int k = 0; k < count; k++) *low = v_m[k] < *low ? v_m[k] : *low, *high = v_m[k] > *high ? v_m[k] : *high;
+    for (int n = 0; n < 4; n++)
+        *low = end[0][n] < *low ? end[0][n] : *low, *high = end[1][n] > *high ? end[1][n] : *high;
+    for (; k < count; k++) *low = v_m[k] < *low ? v_m[k] : *low, *high = v_m[k] > *high ? v_m[k] : *high;
 }
 
 void invented_nodes(SlowNodes *out, const InventedGround *ground, const Elevation *elevation, int count,

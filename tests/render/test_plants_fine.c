@@ -192,6 +192,71 @@ static void texture(void **state)
 
 /* ---- crowns ----------------------------------------------------------------------------------- */
 
+/* Surfaces found many at once have the bits of those found one by one: leaves and wood of plants that lean and are
+ * turned, in more than one piece of work, and a card without area. */
+static void many_surfaces_at_once(void **state)
+{
+    enum { count = 200, flat = 7 };
+    static const double calm[2] = {0, 0}, eye[3] = {0, -100, 5};
+    static ForestHit    hit[count];
+    static double       o[3][count], d[3][count], range_m[count], n_geo[3][count], n_enu[3][count];
+    static float        albedo[count], radius_m[count], open_up[count], open_down[count];
+    const ForestHit    *list[count];
+    const ForestRays    to = {{o[0], o[1], o[2]}, {d[0], d[1], d[2]}, range_m};
+    Plant               straight[PLANT_STANDING];
+    ForestFrame         frame;
+    Arena              *arena = arena_create();
+    ForestSurfaces      all = {
+             {n_geo[0], n_geo[1], n_geo[2]}, {n_enu[0], n_enu[1], n_enu[2]}, albedo, radius_m, open_up, open_down};
+    int wood = 0;
+    (void)state;
+    memcpy(straight, plant, sizeof straight);
+    for (int k = 0; k < PLANT_STANDING; k++) {
+        plant[k].lean[0] = (int8_t)(9 * k), plant[k].lean[1] = (int8_t)(40 - 7 * k);
+        plant[k].twist = (uint16_t)(7000 * k), plant[k].width = (uint8_t)(100 + 10 * k);
+    }
+    assert_int_equal(forest_frame_open(&frame, forest[0], eye, 1000, 0, 0, calm, NULL, arena), STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        const uint64_t    of = (uint64_t)i;
+        const int         kind = i % PLANT_STANDING;
+        const PlantShape *s = &plants->shape[kind][plant_fine];
+        const bool        bark = i % 5 == 0;
+        wood += bark;
+        hit[i] = (ForestHit){
+            .plant = (uint32_t)kind,
+            .place = (uint32_t)kind,
+            .quad = (uint32_t)(bark ? i * 37 % s->bark_quads : s->bark_quads + i * 37 % (s->quads - s->bark_quads)),
+            .kind = (uint8_t)kind,
+            .level = plant_fine,
+            .organ = bark ? PLANT_BARK : PLANT_LEAF,
+            .uv = {(float)random_uniform(9, 1, 0, of), (float)random_uniform(9, 2, 0, of)}};
+        list[i] = &hit[i];
+        for (uint32_t c = 0; c < 3; c++) o[c][i] = eye[c], d[c][i] = 2 * random_uniform(9, 3 + c, 0, of) - 1;
+        range_m[i] = 5 + 100 * random_uniform(9, 6, 0, of);
+    }
+    PlantQuad *card = &plants->shape[hit[flat].kind][plant_fine].quad[hit[flat].quad], whole = *card;
+    memcpy(card->corner[2], card->corner[1], sizeof card->corner[1]);
+    memcpy(card->corner[3], card->corner[0], sizeof card->corner[0]);
+    forest_surfaces(&all, &frame, list, count, &to);
+    for (int i = 0; i < count; i++) {
+        const double way[3] = {d[0][i], d[1][i], d[2][i]}, geo[3] = {n_geo[0][i], n_geo[1][i], n_geo[2][i]},
+                     enu[3] = {n_enu[0][i], n_enu[1][i], n_enu[2][i]};
+        ForestSurface one;
+        forest_surface(&one, &frame, &hit[i], eye, way, range_m[i], (float)(range_m[i] / frame.per_rad));
+        assert_memory_equal(one.n_geo, geo, sizeof geo);
+        assert_memory_equal(one.n_enu, enu, sizeof enu);
+        CHECK(one.albedo == albedo[i] && one.open_up == open_up[i] && one.open_down == open_down[i]);
+        CHECK(one.radius_m == radius_m[i] && (radius_m[i] > 0) == (hit[i].organ == PLANT_BARK));
+    }
+    CHECK(wood == count / 5 && fabs(n_geo[2][flat]) == 1);
+    *card = whole;
+    memcpy(plant, straight, sizeof straight);
+    forest_frame_close(&frame);
+    arena_destroy(arena);
+}
+
+/* ---- crowns ----------------------------------------------------------------------------------- */
+
 /* With the same leaf area in nearly the same places a crown lets as many rays through as at plant_whole. */
 static void gaps_of_crowns(void **state)
 {
@@ -333,6 +398,7 @@ int main(void)
         cmocka_unit_test(the_same_leaf_area),
         cmocka_unit_test(leaves_of_their_size),
         cmocka_unit_test(texture),
+        cmocka_unit_test(many_surfaces_at_once),
         cmocka_unit_test(gaps_of_crowns),
         cmocka_unit_test(crowns_hide_trunks),
         cmocka_unit_test(openness),

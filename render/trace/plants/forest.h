@@ -140,4 +140,16 @@ typedef struct ForestSurface {
 void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const double o_enu[3],
                     const double d_enu[3], double range_m, float footprint_m);
 
+/* The same of many hits at once, to the same bits; footprints are range_m over frame->per_rad. Arrays of the caller's,
+ * [count]. */
+typedef struct ForestRays {
+    const double *o_enu[3], *d_enu[3], *range_m;
+} ForestRays;
+typedef struct ForestSurfaces {
+    double *n_geo[3], *n_enu[3];
+    float  *albedo, *radius_m, *open_up, *open_down;
+} ForestSurfaces;
+void forest_surfaces(ForestSurfaces *out, const ForestFrame *frame, const ForestHit *const *hit, int count,
+                     const ForestRays *rays);
+
 #endif

@@ -68,7 +68,7 @@ void plants_bark(float *albedo, float slope[2], PlantKind kind, uint32_t plant, 
         const double kept = clamp(2 - 4 * (double)footprint_m / f->along_m, 0, 1);
         const double p[3] = {(double)p_m[0], (double)p_m[1], (double)p_m[2] / f->along_m};
         double       unused;
-        bands = kept * f->bands * noise(&unused, plant, 9, p);
+        if (kept > 0) bands = kept * f->bands * noise(&unused, plant, 9, p);
     }
     *albedo = (float)fmax(1 + f->contrast * sum + bands, 0.05);
     slope[0] = (float)(0.5 * f->relief * along);

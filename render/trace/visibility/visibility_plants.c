@@ -69,28 +69,41 @@ static void plants_first(double *range_m, void *found, const TraceBlock *block, 
 static void plants_finish(Hits *hits, const int *list, int count, const void *found, const TraceBlock *block,
                           const void *self)
 {
-    const ForestFrame *plants = self;
-    const Materials   *materials = block->v->materials;
+    const Materials *materials = block->v->materials;
+    const ForestHit *hit[hits_capacity] = {NULL};
+    double           o[3][hits_capacity], d[3][hits_capacity], range_m[hits_capacity];
+    double           n_geo[3][hits_capacity], n_enu[3][hits_capacity];
+    float            albedo[hits_capacity], radius_m[hits_capacity], open_up[hits_capacity], open_down[hits_capacity];
+    const ForestRays rays = {{o[0], o[1], o[2]}, {d[0], d[1], d[2]}, range_m};
+    ForestSurfaces   at = {.n_geo = {n_geo[0], n_geo[1], n_geo[2]},
+                           .n_enu = {n_enu[0], n_enu[1], n_enu[2]},
+                           .albedo = albedo,
+                           .radius_m = radius_m,
+                           .open_up = open_up,
+                           .open_down = open_down};
     for (int k = 0; k < count; k++) {
-        const int        i = list[k];
-        const ForestHit *hit = (const ForestHit *)found + i;
-        const double     range_m = hits->range_m[i];
-        const double     drop_m = block->rays->bent ? ray_drop(block->v, block->rays, i, range_m) : 0;
-        const double     o[3] = {block->o_enu[0][i], block->o_enu[1][i], block->o_enu[2][i] - drop_m};
-        const double     d[3] = {block->d_enu[0][i], block->d_enu[1][i], block->d_enu[2][i]};
-        ForestSurface    at;
-        block->counters->hits_by_table += hit->by_table;
-        forest_surface(&at, plants, hit, o, d, range_m, (float)(range_m / plants->per_rad));
-        visibility_store_normals(hits, i, at.n_geo, at.n_enu, d);
+        const int i = list[k];
+        hit[k] = (const ForestHit *)found + i;
+        range_m[k] = hits->range_m[i];
+        for (int c = 0; c < 3; c++) o[c][k] = block->o_enu[c][i], d[c][k] = block->d_enu[c][i];
+        o[2][k] -= block->rays->bent ? ray_drop(block->v, block->rays, i, range_m[k]) : 0;
+    }
+    forest_surfaces(&at, self, hit, count, &rays);
+    for (int k = 0; k < count; k++) {
+        const int    i = list[k];
+        const double d_enu[3] = {d[0][k], d[1][k], d[2][k]};
+        const double geo[3] = {n_geo[0][k], n_geo[1][k], n_geo[2][k]}, enu[3] = {n_enu[0][k], n_enu[1][k], n_enu[2][k]};
+        block->counters->hits_by_table += hit[k]->by_table;
+        visibility_store_normals(hits, i, geo, enu, d_enu);
         hits->kind[i] = hit_plant;
-        hits->instance[i] = hit->plant + 1;
-        hits->facet[i] = hit->level == 0 ? hit->quad : UINT32_MAX; /* tables are of level 0 */
-        hits->albedo[i] = at.albedo;
-        hits->radius_m[i] = at.radius_m;
-        hits->open_up[i] = at.open_up;
-        hits->open_down[i] = at.open_down;
-        hits->material[i] = materials ? (uint16_t)materials->plant[hit->kind][hit->organ] : 0;
-        hits->inside[i] = hit->organ != PLANT_LEAF && hit->back;
+        hits->instance[i] = hit[k]->plant + 1;
+        hits->facet[i] = hit[k]->level == 0 ? hit[k]->quad : UINT32_MAX; /* tables are of level 0 */
+        hits->albedo[i] = albedo[k];
+        hits->radius_m[i] = radius_m[k];
+        hits->open_up[i] = open_up[k];
+        hits->open_down[i] = open_down[k];
+        hits->material[i] = materials ? (uint16_t)materials->plant[hit[k]->kind][hit[k]->organ] : 0;
+        hits->inside[i] = hit[k]->organ != PLANT_LEAF && hit[k]->back;
     }
 }
 
