@@ -42,7 +42,8 @@ static Status add_rows(FarWoods *far, Materials *materials)
 static CacheKey key_of(const Forest *forest, const Materials *materials, bool leaves, const PlantsKept *kept)
 {
     const ForestConfig config = forest_config(forest);
-    const double       number[] = {leaves, config.leaves, config.level1_px, config.sway, config.fine, config.tables};
+    const double       number[] = {leaves,      config.leaves,   config.level1_px, config.sway,
+                                   config.fine, config.all_fine, config.tables};
     char               path[512], sha256[sha256_text_size] = "";
     CacheKey           key = cache_key("stands of far woods");
     if (!etc_path(path, sizeof path, "woods.csv") || sha256_file(sha256, path) != STATUS_OK) key.good = false;

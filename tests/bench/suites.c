@@ -119,14 +119,16 @@ static const BenchSuite suites[] = {
      .run = bench_speed_radar},
     {.name = "woods",
      .room = "sensor",
-     .options = "trees=N: at most; 3000000",
+     .options = "trees=N: at most; 3000000,parts=WORDS: times errors vehicles flight; some of them joined by +,"
+                "views=DIGITS: of 1234",
      .help =
          "frames of three million trees over 192 M posts, in full detail and by tables of far plants: time, and what the "
          "latter costs in pictures, vehicles seen, a flight, recognisers",
      .run = bench_woods,
      .check = bench_woods_check,
      .reads =
-         "Frames are whole, of all bands, one ray a pixel but for rows of the default quality. Errors are against 16 rays in every pixel in full "
+         "Frames are whole, of all bands, one ray a pixel but for rows of the default quality. Times of full detail are with terrain.woods_tables: "
+         "off; errors are beside plants with the finest leaves everywhere, against 16 rays in every pixel in full "
          "detail; of tables also by the same 16 rays in both, where no sampling is part of it. Rows with a limit are of tables beside full "
          "detail: noise is out where they say so (products of differences by two independent sets of rays), the standard error is by tiles, frames "
          "or vehicles, and twice it, at most half of what was asked, is added to the limit."},

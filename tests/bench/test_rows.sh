@@ -122,7 +122,7 @@ woods)
         for plane in red green blue "3-5 um" "8-12 um"; do rows "$view: tables, $plane"; done
         rows "$view: default quality, tables" "$view: tables: cover"
         for plane in red "3-5 um" "8-12 um"; do
-            for figure in mean "one ray, blocks of 4 px" "one ray, blocks of 8 px" "structural error, blocks of 4 px" \
+            for figure in mean "mean, one ray" "one ray, blocks of 4 px" "one ray, blocks of 8 px" "structural error, blocks of 4 px" \
                 "contrast of a pixel, one ray" "contrast of a pixel" "autocorrelation length"; do
                 rows "$view: tables, $plane: $figure"
             done
@@ -132,7 +132,14 @@ woods)
         "tables: visible share of vehicles, as in frames" "tables: visible share of vehicles, by its plants alone" \
         "tables, red: false alarms" "tables, 8-12 um: false alarms" "tables: vehicles by their surroundings: AUC" \
         "tables: told from full detail: AUC" "flight: tables, red: change of representation, pixels" \
-        "flight: tables, 8-12 um: change from frame to frame, blocks of 4 px" "flight: slowest frame over the median, tables" ;;
+        "flight: tables, 8-12 um: change from frame to frame, blocks of 4 px" "flight: first frame over the median, tables" \
+        "flight: slowest frame over the median, tables"
+    run bench woods --quick --parts errors+flights
+    check "a part that is none is refused" [ $code = 2 ]
+    check "and said" complained "parts: .errors.flights. is not"
+    run bench woods --quick --views 15
+    check "a view that is none is refused" [ $code = 2 ]
+    check "and said" complained "views: .15. is not" ;;
 *) fail "no rows are known of $group" ;;
 esac
 

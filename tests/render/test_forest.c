@@ -274,6 +274,10 @@ static void levels(void **state)
     compare(&woods, origin, 40, plant_whole, true, NULL);
     compare(&woods, origin, 40, plant_fine, true, real);
     close_forest();
+    open_forest(&woods, &(ForestConfig){.leaves = true, .fine = true, .all_fine = true}, far_eye, 1000);
+    assert_false(forest_simplifies(forest));
+    compare(&woods, origin, 40, plant_fine, true, NULL);
+    close_forest();
 }
 
 /* Plants of one height change to the fine level at heights in the picture that are even over 24 .. 40 px: at 28, 32 and

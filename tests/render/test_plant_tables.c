@@ -17,11 +17,12 @@ typedef struct Stage {
 } Stage;
 
 static Stage  by_table, by_plant;
-static double sway; /* of forests opened from now on, in a storm */
+static double sway;   /* of forests opened from now on, in a storm */
+static bool   finest; /* and whether they have the finest leaves, everywhere */
 
 static void open_stage(Stage *s, const Woods *woods, bool tables, const double eye_enu[3], double per_rad)
 {
-    const ForestConfig config = {.leaves = true, .tables = tables, .sway = sway};
+    const ForestConfig config = {.leaves = true, .fine = finest, .all_fine = finest, .tables = tables, .sway = sway};
     s->arena = arena_create();
     assert_non_null(s->arena);
     assert_int_equal(forest_create(&s->forest, woods, &hand_plants, &config, "avx2"), STATUS_OK);
@@ -299,47 +300,79 @@ static void completed(void **state)
 
 /* ---- shadows ---------------------------------------------------------------------------------- */
 
-/* As test_forest's: gaps of trees at random are exp(-density x area x (1 - exp(-G l))) with G = 1/2 for leaves of every
- * direction (Ross, The radiation regime and architecture of plant stands, 1981). Towards a sun overhead. */
-static void transmittance(void **state)
+/* Leaves alone, of every direction, throughout the box of a plant 1 m high; at the finest level half of each card is
+ * leaf. Returns their area. */
+static double grow_leaves(void)
 {
-    enum { trees = 900 };
-    static Plant plant[trees];
-    const double half_m = 60;
-    double       exponent = 0;
-    int          open = 0;
-    (void)state;
-    hand_grow(true, 0.03);
-    for (int kind = 0; kind < PLANT_KINDS; kind++) { /* leaves alone, throughout the box of a plant */
-        PlantShape *s = &hand_plants.shape[kind][plant_whole];
+    static const double size = 0.03;
+    hand_grow(true, size);
+    for (int kind = 0; kind < PLANT_KINDS; kind++) {
+        PlantShape *s = &hand_plants.shape[kind][finest ? plant_fine : plant_whole];
         for (int k = 0; k < hand_leaves; k++) {
             const uint64_t of = (uint64_t)(kind * hand_leaves + k);
             const double   at[3] = {hand_dice(20, of) - 0.5, hand_dice(21, of) - 0.5, 0.05 + 0.9 * hand_dice(22, of)};
             double         n[3];
             hand_plant_direction(n, 23, of);
-            hand_leaf(&s->quad[k], at, n, 0.03, k);
+            hand_leaf(&s->quad[k], at, n, size, k);
         }
         s->quads = s->leaves = hand_leaves, s->pieces = s->bark_quads = 0;
         for (int c = 0; c < 3; c++) s->low[c] = c < 2 ? -0.55f : 0, s->high[c] = c < 2 ? 0.55f : 1;
     }
-    Woods woods = hand_stand(plant, trees, origin, half_m);
-    for (int i = 0; i < trees; i++) plant[i].lean[0] = plant[i].lean[1] = 0, plant[i].width = 128;
-    open_stage(&by_table, &woods, true, (const double[3]){0, 0, 5000}, 100);
-    by_table.frame.ray_px = 0.01;
+    return hand_leaves * size * size * (finest ? (double)hand_plants.pattern[0][0].area : 1);
+}
+
+/* Shares of rays that meet nothing: from below to a sun so far from overhead, and from an eye overhead down. */
+static void find_gaps(double gap[2], Stage *s, const double eye_enu[3], double half_m, double off_rad)
+{
+    int open[2] = {0};
     for (int i = 0; i < rays; i++) {
-        by_table.o[0][i] = 0.7 * half_m * (2 * hand_dice(24, (uint64_t)i) - 1);
-        by_table.o[1][i] = 0.7 * half_m * (2 * hand_dice(25, (uint64_t)i) - 1);
-        by_table.o[2][i] = -1, by_table.d[0][i] = by_table.d[1][i] = 0, by_table.d[2][i] = 1;
+        s->o[0][i] = 0.7 * half_m * (2 * hand_dice(24, (uint64_t)i) - 1);
+        s->o[1][i] = 0.7 * half_m * (2 * hand_dice(25, (uint64_t)i) - 1);
+        s->o[2][i] = -1, s->d[0][i] = 0.6 * sin(off_rad), s->d[1][i] = 0.8 * sin(off_rad), s->d[2][i] = cos(off_rad);
     }
-    any_hits(&by_table, NULL);
-    for (int i = 0; i < rays; i++) open += !by_table.dark[i];
-    for (int i = 0; i < trees; i++) {
-        const double h = plant_height_m(&plant[i]), leaf = hand_leaves * 0.03 * 0.03; /* over (1 x 1) h2 */
-        exponent += h * h / (4 * half_m * half_m) * (1 - exp(-0.5 * leaf));
+    any_hits(s, NULL);
+    for (int i = 0; i < rays; i++) open[0] += !s->dark[i];
+    look(s, eye_enu, (const double[3]){-0.7 * half_m, -0.7 * half_m, -1},
+         (const double[3]){0.7 * half_m, 0.7 * half_m, -1});
+    first_hits(s, 0, rays, NULL);
+    for (int i = 0; i < rays; i++) open[1] += !(s->range_m[i] < INFINITY);
+    for (int k = 0; k < 2; k++) gap[k] = open[k] / (double)rays;
+}
+
+/* As test_forest's: gaps of trees at random are exp(-density x area x (1 - exp(-G l))) with G = 1/2 for leaves of every
+ * direction (Ross, The radiation regime and architecture of plant stands, 1981): of the plants themselves, sprays and
+ * cards of leaves, and of tables of both, by texels of the finest and of the coarsest level. A ray off the vertical
+ * passes through more of them, by its cosine. */
+static void transmittance(void **state)
+{
+    enum { trees = 900 };
+    static const struct {
+        bool   fine, tables;
+        double ray_px;
+    } as[] = {{false, false, 1},  {true, false, 1},    {false, true, 1e-3},
+              {true, true, 1e-3}, {false, true, 0.05}, {true, true, 0.05}};
+    static Plant plant[trees];
+    const double half_m = 60, eye_enu[3] = {0, 0, 5000}, off_rad = 6 * rad_per_deg;
+    (void)state;
+    for (size_t k = 0; k < sizeof as / sizeof *as; k++) {
+        double exponent = 0, gap[2];
+        finest = as[k].fine;
+        const double leaf = grow_leaves(); /* over (1 x 1) h2 */
+        Woods        woods = hand_stand(plant, trees, origin, half_m);
+        for (int i = 0; i < trees; i++) {
+            const double h = plant_height_m(&plant[i]);
+            plant[i].lean[0] = plant[i].lean[1] = 0, plant[i].width = 128;
+            exponent += h * h / (4 * half_m * half_m) * (1 - exp(-0.5 * leaf));
+        }
+        open_stage(&by_table, &woods, as[k].tables, eye_enu, 100);
+        by_table.frame.ray_px = as[k].ray_px;
+        find_gaps(gap, &by_table, eye_enu, half_m, off_rad);
+        printf("gaps to the sun %.4f, from the eye %.4f, closed form %.4f\n", gap[0], gap[1], exp(-exponent));
+        CHECK_NEAR(gap[0], exp(-exponent / cos(off_rad)), 0.03);
+        CHECK_NEAR(gap[1], exp(-exponent), 0.03);
+        close_stage(&by_table);
     }
-    printf("gaps %.4f, closed form %.4f\n", open / (double)rays, exp(-exponent));
-    CHECK_NEAR(open / (double)rays, exp(-exponent), 0.03);
-    close_stage(&by_table);
+    finest = false;
 }
 
 /* Of the places that an eye sees, as many lie in the sun by tables as by the plants themselves: those of their own

@@ -1,8 +1,8 @@
-/* tests/sensor/test_saved_fields.c: fields of a frame file: one line writes and reads each, and a list of records takes
- * its least size from them. */
+/* tests/sensor/test_saved_fields.c: fields of a frame file: one line writes and reads each, a list of records takes
+ * its least size from them, and older versions lack what came later. */
 #include "tests/check.h"
 
-#include "sensor/verify/saved_frame/chunks_private.h"
+#include "sensor/verify/saved_frame/saved_frame_private.h"
 
 typedef struct Toy {
     int    number;
@@ -139,10 +139,146 @@ static void a_count_is_no_more_than_the_octets_hold(void **state)
     arena_destroy(arena);
 }
 
+/* ---- files of older versions --------------------------------------------------------------------- */
+
+static void identity(double r[9])
+{
+    for (int k = 0; k < 9; k++) r[k] = k % 4 == 0;
+}
+
+/* A frame with one of everything that came with a version after the first. */
+static SavedFrame frame_of_now(void)
+{
+    static SnapshotEntity   entity;
+    static GroundStand      stand;
+    static float            patch_k[2] = {290, 310};
+    static const WoodsPlace place[2] = {{{1, 2}}, {{3, 4}}};
+    SavedFrame file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .planted = true};
+    /* what writes an older version changes what it writes */
+    entity = (SnapshotEntity){.model = -1, .p_ecef = {6378137, 0, 0}, .first_patch = 0, .patches = 2, .dt_k = 4};
+    stand = (GroundStand){.p_ecef = {6378137, 0, 0},
+                          .low_m = {-4, -2, -3},
+                          .high_m = {4, 2, 0},
+                          .to_s = 60,
+                          .blow = {.radius_m = 0.5f, .speed_mps = 20, .excess_k = 100, .to_s = 60}};
+    identity(entity.r_ecef_from_body), identity(stand.r_ecef_from_body);
+    file.snapshot = (Snapshot){.count = 1, .entity = &entity, .patch_count = 2, .patch_k = patch_k};
+    file.snapshot.marks.stands = 1, file.snapshot.marks.stand = &stand;
+    file.request = (RenderRequest){.view = {.width = 16, .height = 12, .focal_px = 30},
+                                   .bands = 1,
+                                   .samples = 1,
+                                   .hidden_entity = -1,
+                                   .sampling = SAMPLING_QUARTER,
+                                   .refraction = true};
+    file.eye.host_index = -1;
+    identity(file.request.view.r_enu_from_cam), identity(file.eye.r_ecef_from_cam), identity(file.r_ecef_from_body);
+    file.ground = (LandscapeParts){.invented = true, .config = landscape_default_config()};
+    file.woods =
+        (WoodsConfig){.half_width_m = 500, .most_trees = 70, .place_count = 2, .place = place, .far_half_m = 20000};
+    return file;
+}
+
+static void ground_fields(Fields *f, SavedFrame *file) { saved_fields_ground(f, file, NULL); }
+
+enum { part_request, part_woods, part_marks, part_snapshot, changed_parts, parts = 10 };
+
+static const struct {
+    const char *name;
+    void (*fields)(Fields *f, SavedFrame *file);
+} part[parts] = {{"request", saved_fields_request}, {"woods", saved_fields_woods},
+                 {"marks", saved_fields_marks},     {"snapshot", saved_fields_snapshot},
+                 {"about", saved_fields_about},     {"settings", saved_fields_settings},
+                 {"tables", saved_fields_tables},   {"models", saved_fields_models},
+                 {"planes", saved_fields_planes},   {"ground", ground_fields}};
+
+/* A file that says it is of a version, with chunks of another or the same. octets: of its chunks, plain. */
+static ByteSink file_as(size_t octets[parts], uint32_t says, int version)
+{
+    SavedFrame frame = frame_of_now();
+    ByteSink   file = {0};
+    sink_bytes(&file, "PVFRAME\n", 8);
+    sink_bytes(&file, &says, sizeof says);
+    for (int k = 0; k < parts; k++) {
+        ByteSink chunk = {0};
+        part[k].fields(&(Fields){.to = &chunk, .version = version}, &frame);
+        chunks_put(&file, part[k].name, &chunk);
+        if (octets) octets[k] = chunk.count;
+        sink_free(&chunk);
+    }
+    chunks_end(&file);
+    return file;
+}
+
+static Status parsed(SavedFrame *out, uint32_t says, int version, Arena *arena)
+{
+    ByteSink     file = file_as(NULL, says, version);
+    const Status status = saved_frame_parse(out, file.bytes, file.count, "a test's", arena);
+    sink_free(&file);
+    return status;
+}
+
+/* What etc/FRAME_FILE.md says a version lacks takes no octets in it, and is read as it was before: nothing, no step of
+ * sampling, straight lines of sight. A u32, or a bool, has 4 octets, a float 4, a double 8, a list 4 and its records.
+ */
+static void older_versions_are_read(void **state)
+{
+    enum { places = 4 + 2 * 16, blow = 9 * 4 + 2 * 8, patches = 12 + 4 + 2 * 4, roles = 21 * 4 };
+    static const int less[chunks_version][changed_parts] = {/* than now, from version 1 */
+                                                            {8, places + 8, blow, patches - roles},
+                                                            {8, places + 8, blow, patches - roles},
+                                                            {8, places + 8, blow, 0},
+                                                            {8, places + 8, 0, 0},
+                                                            {4, places + 8, 0, 0},
+                                                            {4, 8, 0, 0},
+                                                            {0, 8, 0, 0},
+                                                            {0, 0, 0, 0}};
+    Arena           *arena = arena_create();
+    size_t           now[parts], octets[parts];
+    ByteSink         file = file_as(now, chunks_version, chunks_version);
+    (void)state;
+    sink_free(&file);
+    for (int version = 1; version <= chunks_version; version++) {
+        SavedFrame got;
+        arena_reset(arena);
+        file = file_as(octets, (uint32_t)version, version), sink_free(&file);
+        for (int k = 0; k < parts; k++)
+            assert_int_equal((int)now[k] - (int)octets[k], k < changed_parts ? less[version - 1][k] : 0);
+        assert_int_equal(parsed(&got, (uint32_t)version, version, arena), STATUS_OK);
+        const SnapshotEntity *e = &got.snapshot.entity[0];
+        const GroundStand    *stand = &got.snapshot.marks.stand[0];
+        CHECK(got.snapshot.count == 1 && got.snapshot.marks.stands == 1 && got.woods.most_trees == 70);
+        CHECK(got.woods.far_half_m == (version >= 8 ? 20000 : 0));
+        CHECK(got.request.refraction == (version >= 7));
+        CHECK(got.woods.place_count == (version >= 6 ? 2 : 0));
+        CHECK(got.request.sampling == (version >= 5 ? SAMPLING_QUARTER : SAMPLING_ALL));
+        CHECK(stand->blow.excess_k == (version >= 4 ? 100 : 0) && stand->blow.to_s == (version >= 4 ? 60 : 0));
+        CHECK(e->patches == (version >= 3 ? 2 : 0) && e->first_patch == (version >= 3 ? 0 : -1));
+        CHECK(e->dt_k == (version >= 3 ? 4 : 0) && got.snapshot.patch_count == (version >= 3 ? 2 : 0));
+    }
+    arena_destroy(arena);
+}
+
+/* A version that is none, or later, and content of another version than the file says. */
+static void other_versions_are_refused(void **state)
+{
+    Arena     *arena = arena_create();
+    SavedFrame got;
+    (void)state;
+    assert_int_equal(parsed(&got, 0, chunks_version, arena), STATUS_UNSUPPORTED);
+    assert_int_equal(parsed(&got, chunks_version + 1, chunks_version, arena), STATUS_UNSUPPORTED);
+    assert_int_equal(parsed(&got, UINT32_MAX, chunks_version, arena), STATUS_UNSUPPORTED);
+    for (int version = 3; version <= chunks_version; version++) {
+        assert_int_equal(parsed(&got, (uint32_t)version, version - 1, arena), STATUS_BAD_VALUE);
+        assert_int_equal(parsed(&got, (uint32_t)version - 1, version, arena), STATUS_BAD_VALUE);
+    }
+    arena_destroy(arena);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read),
-                                       cmocka_unit_test(what_is_out_of_range_is_named),
-                                       cmocka_unit_test(a_count_is_no_more_than_the_octets_hold)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_written_is_read), cmocka_unit_test(what_is_out_of_range_is_named),
+        cmocka_unit_test(a_count_is_no_more_than_the_octets_hold), cmocka_unit_test(older_versions_are_read),
+        cmocka_unit_test(other_versions_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -255,7 +255,8 @@ ForestConfig  forest_config(const Forest *forest) { return forest->config; }
 
 bool forest_simplifies(const Forest *forest)
 {
-    return forest->config.level1_px > 0 || forest->config.fine || forest->config.tables;
+    const ForestConfig *c = &forest->config;
+    return c->level1_px > 0 || (c->fine && !c->all_fine) || c->tables;
 }
 
 /* ---- a frame ---------------------------------------------------------------------------------- */
@@ -302,7 +303,8 @@ int forest_level(const ForestFrame *frame, const Plant *plant, const double foot
 {
     const ForestConfig *c = &frame->forest->config;
     double              to_eye[3];
-    if (plant->kind < PLANT_STANDING && frame->forest->table[plant->kind]) return forest_finest(frame->forest);
+    if (c->all_fine || (plant->kind < PLANT_STANDING && frame->forest->table[plant->kind]))
+        return forest_finest(frame->forest);
     if (!(c->level1_px > 0) && !c->fine) return plant_whole;
     v3_sub(to_eye, foot_enu, frame->eye_enu);
     const double distance_m = v3_length(to_eye), high = plant_height_m(plant) * frame->per_rad;

@@ -29,6 +29,7 @@ typedef struct ForestConfig {
     double level1_px; /* a standing plant lower than this in the picture is traced at plant_simple; 0: never */
     bool   fine;      /* others are traced at plant_fine above some height in the picture, of each plant its own between
                        * forest_fine_px; false: never */
+    bool   all_fine;  /* with fine: at any height in the picture. Full detail, to measure errors by */
     double sway;      /* 0: plants stand still; 1: they sway by the wind of the frame */
     bool   tables;    /* rays from the frame's eye and to the sun meet standing plants that are lower in the picture
                        * than forest_table_px in tables (forest_table.c) */

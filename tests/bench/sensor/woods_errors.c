@@ -18,7 +18,8 @@ static const int    tile_side[2] = {16, 48};
 typedef enum TileSum {
     SUM_FULL, /* means of 16 and 36 rays */
     SUM_JUDGED,
-    SUM_ONE_4, /* squared error of one ray over blocks of 4 px: full, judged; of 8 px */
+    SUM_JUDGED_ONE, /* of one ray, whose texels are wider */
+    SUM_ONE_4,      /* squared error of one ray over blocks of 4 px: full, judged; of 8 px */
     SUM_ONE_8 = SUM_ONE_4 + woods_details,
     SUM_STRUCTURE_1 = SUM_ONE_8 + woods_details, /* structural, over blocks of 1, 4, 8 px */
     SUM_STRUCTURE_4,
@@ -30,6 +31,7 @@ typedef enum TileSum {
 
 typedef enum Figure {
     FIGURE_BIAS,
+    FIGURE_BIAS_ONE,
     FIGURE_ONE_4, /* of the judged over that of full detail */
     FIGURE_ONE_8,
     FIGURE_STRUCTURE_1,
@@ -57,6 +59,8 @@ static double figure_of(const void *user, int without)
     switch (p->figure) {
     case FIGURE_BIAS:
         return 100 * (s[SUM_JUDGED] / s[SUM_FULL] - 1);
+    case FIGURE_BIAS_ONE:
+        return 100 * (s[SUM_JUDGED_ONE] / s[SUM_FULL] - 1);
     case FIGURE_ONE_4:
         return sqrt(s[SUM_ONE_4 + 1] / s[SUM_ONE_4]);
     case FIGURE_ONE_8:
@@ -101,6 +105,7 @@ static void sum_tile(double *s, const Pieces *p, const PlaneTile *tile, int plan
         tile_lags(&s[SUM_CONTRAST + d], 1, tile, one[d], one[d]);
         tile_lags(&s[SUM_LAGS + d * lags_most], p->lags, tile, some[d], many[d]);
     }
+    s[SUM_JUDGED_ONE] = tile_mean(tile, one[1]);
     s[SUM_STRUCTURE_1] = tile_product(tile, 1, some[1], some[0], many[1], many[0]);
     s[SUM_STRUCTURE_4] = tile_product(tile, 4, some[1], some[0], many[1], many[0]);
     s[SUM_STRUCTURE_8] = tile_product(tile, 8, some[1], some[0], many[1], many[0]);
@@ -181,6 +186,8 @@ static void judge_plane(PlaneRows *r)
     if (r->k > 0) snprintf(text, sizeof text, "16 and 36 rays, both; %+.3g K", bias.value * r->k);
     else snprintf(text, sizeof text, "16 and 36 rays, both");
     judge(r, "mean", bias, (WoodsLimit){1, "%", false}, text);
+    judge(r, "mean, one ray", estimate(r, FIGURE_BIAS_ONE), (WoodsLimit){1, "%", false},
+          "beside 16 and 36 rays in full detail");
     judge_one_ray(r);
     judge_structure(r);
     snprintf(text, sizeof text, "deviation within tiles; %.3g / %.3g %% of the mean", percent(r, SUM_CONTRAST + 1),

@@ -18,13 +18,15 @@ const WoodsPose woods_pose[woods_views] = {{"100 m up, 5 degrees down", 100, 5, 
 
 const char *const woods_detail[woods_details] = {"full detail", "tables"};
 
-/* The one place that says how the judged forest differs from full detail. */
-static ForestConfig config_of(int detail)
+/* The one place that says how the judged forest differs from full detail. Times are beside what terrain.woods_tables:
+ * off shows; errors, and all of a quick run, beside plants whose leaves are the finest at any height in the picture. */
+static ForestConfig config_of(const WoodsBench *w, int detail, bool timed)
 {
-    return (ForestConfig){.leaves = true, .fine = true, .tables = detail == 1};
+    return (ForestConfig){.leaves = true,
+                          .fine = true,
+                          .all_fine = detail == 0 && !(timed && !bench_quick(w->bench)),
+                          .tables = detail == 1};
 }
-
-double woods_change_px(void) { return forest_table_px[0]; }
 
 /* ---- rows ----------------------------------------------------------------------------------------- */
 
@@ -122,7 +124,7 @@ static Status make_woods(WoodsBench *w)
 
 static Status make_forest(WoodsBench *w, int detail)
 {
-    const ForestConfig config = config_of(detail);
+    const ForestConfig config = config_of(w, detail, woods_wants(w, WOODS_TIMES));
     World             *world = &w->scene.world;
     const double       start_s = wall_clock_s();
     char               what[what_size];
@@ -141,6 +143,16 @@ static Status make_forest(WoodsBench *w, int detail)
     snprintf(what, sizeof what, "memory: with a forest of %s, too", woods_detail[detail]);
     woods_say_memory(w, what, NAN);
     return STATUS_OK;
+}
+
+Status woods_replace(WoodsBench *w, int detail, const ForestConfig *config)
+{
+    World *world = &w->scene.world;
+    if (w->forest[detail]) forest_destroy(w->forest[detail]);
+    w->forest[detail] = NULL, world->forest = w->forest[0];
+    const Status status = forest_create(&w->forest[detail], &w->woods, world->plants, config, NULL);
+    world->forest = w->forest[0];
+    return status;
 }
 
 static const unsigned all_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR | 1u << BAND_RADAR;
@@ -191,6 +203,43 @@ double woods_processor_s(void)
 
 /* ---- the suite ----------------------------------------------------------------------------------- */
 
+/* What may be asked for by words. */
+static const char *const part_name[WOODS_PARTS] = {"times", "errors", "vehicles", "flight"};
+
+/* Bits of the words that are joined by +; all of them where the option is not given. */
+static Status read_parts(unsigned *parts, const Bench *bench)
+{
+    const char *text = bench_option(bench, "parts");
+    *parts = text ? 0 : (1u << WOODS_PARTS) - 1;
+    for (const char *at = text; at && (at == text || *at);) {
+        const size_t length = strcspn(at, "+");
+        int          k = 0;
+        while (k < WOODS_PARTS && (strlen(part_name[k]) != length || memcmp(part_name[k], at, length) != 0)) k++;
+        if (k == WOODS_PARTS) {
+            log_error("bench: --parts: '%s' is not some of times, errors, vehicles and flight, joined by +", text);
+            return STATUS_BAD_VALUE;
+        }
+        *parts |= 1u << k;
+        at += length + (at[length] == '+');
+    }
+    return STATUS_OK;
+}
+
+/* Bits of the views whose numbers, from 1, are the digits. */
+static Status read_views(unsigned *views, const Bench *bench)
+{
+    const char *text = bench_option(bench, "views");
+    *views = text ? 0 : (1u << woods_views) - 1;
+    for (const char *at = text; at && (at == text || *at); at++) {
+        if (*at < '1' || *at > '0' + woods_views) {
+            log_error("bench: --views: '%s' is not digits of 1 .. %d", text, woods_views);
+            return STATUS_BAD_VALUE;
+        }
+        *views |= 1u << (*at - '1');
+    }
+    return STATUS_OK;
+}
+
 static Status read_trees(double *number, const Bench *bench)
 {
     const char *trees = bench_option(bench, "trees");
@@ -202,8 +251,10 @@ static Status read_trees(double *number, const Bench *bench)
 
 Status bench_woods_check(const Bench *bench)
 {
-    double number;
-    return read_trees(&number, bench);
+    double       number;
+    unsigned     bits;
+    const Status status = read_parts(&bits, bench), seen = read_views(&bits, bench);
+    return status != STATUS_OK ? status : seen != STATUS_OK ? seen : read_trees(&number, bench);
 }
 
 static Status open_bench(WoodsBench *w)
@@ -213,6 +264,8 @@ static Status open_bench(WoodsBench *w)
     w->width = quick ? 160 : 720, w->height = quick ? 108 : 486;
     w->east_m = quick ? 1000 : 12000, w->north_m = quick ? 2000 : 16000;
     Status status = read_trees(&number, w->bench);
+    if (status == STATUS_OK) status = read_parts(&w->parts, w->bench);
+    if (status == STATUS_OK) status = read_views(&w->views, w->bench);
     if (status != STATUS_OK) return status;
     w->trees = (int)number;
     status = pool_create(&w->one, 1);
@@ -239,20 +292,39 @@ static Status say_memories(WoodsBench *w)
 
 static Status time_all(WoodsBench *w)
 {
+    Status status = STATUS_OK;
+    for (int v = 0; v < woods_views && status == STATUS_OK; v++)
+        if (w->views >> v & 1) status = woods_timings(w, v);
+    for (int v = 0; v < woods_views && status == STATUS_OK; v++)
+        if (w->views >> v & 1) status = woods_stages(w, v);
+    return status;
+}
+
+/* Rows of what tables cost, beside full detail. */
+static Status judge_all(WoodsBench *w)
+{
+    const ForestConfig full = config_of(w, 0, false);
+    Status             status = STATUS_OK;
+    if (!forest_config(w->forest[0]).all_fine) status = woods_replace(w, 0, &full);
+    for (int v = 0; v < woods_views && status == STATUS_OK; v++)
+        if (woods_wants(w, WOODS_ERRORS) && w->views >> v & 1) status = woods_errors(w, v);
+    if (woods_wants(w, WOODS_VEHICLES) && status == STATUS_OK) status = woods_targets(w);
+    if (woods_wants(w, WOODS_FLIGHT) && status == STATUS_OK) status = woods_flight(w);
+    if (woods_wants(w, WOODS_FLIGHT) && !bench_quick(w->bench) && status == STATUS_OK) status = woods_far_end(w);
+    return status;
+}
+
+static Status run_all(WoodsBench *w)
+{
     Status status = open_bench(w);
     if (status == STATUS_OK) status = make_ground(w);
     if (status == STATUS_OK) status = make_vehicles(w);
     if (status == STATUS_OK) status = make_woods(w);
     if (status == STATUS_OK) status = make_forest(w, 0);
-    if (status == STATUS_OK) status = say_memories(w);
+    if (status == STATUS_OK && woods_wants(w, WOODS_TIMES)) status = say_memories(w);
     if (status == STATUS_OK) status = make_forest(w, 1);
-    for (int v = 0; v < woods_views && status == STATUS_OK; v++) {
-        status = woods_timings(w, v);
-        if (status == STATUS_OK) status = woods_errors(w, v);
-    }
-    for (int v = 0; v < woods_views && status == STATUS_OK; v++) status = woods_stages(w, v);
-    if (status == STATUS_OK) status = woods_targets(w);
-    if (status == STATUS_OK) status = woods_flight(w);
+    if (status == STATUS_OK && woods_wants(w, WOODS_TIMES)) status = time_all(w);
+    if (status == STATUS_OK) status = judge_all(w);
     woods_say(w, "memory: at most in the whole bench", bench_memory_mb("VmHWM:"), "MB");
     return status;
 }
@@ -260,7 +332,7 @@ static Status time_all(WoodsBench *w)
 Status bench_woods(Bench *bench)
 {
     WoodsBench   w = {.bench = bench};
-    const Status status = time_all(&w);
+    const Status status = run_all(&w);
     if (status != STATUS_OK) log_error("bench: woods: %s", status_name(status));
     w.scene.world.forest = w.forest[0];
     trial_scene_close(&w.scene);

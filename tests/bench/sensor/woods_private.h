@@ -7,6 +7,9 @@
 
 enum { woods_views = 4, woods_vehicles = 20, woods_details = 2 /* full detail; the representation that is judged */ };
 
+/* Parts of the bench, each with its word for --parts: bits of WoodsBench.parts. */
+typedef enum WoodsPart { WOODS_TIMES, WOODS_ERRORS, WOODS_VEHICLES, WOODS_FLIGHT, WOODS_PARTS } WoodsPart;
+
 typedef struct WoodsPose {
     const char *name;
     double      above_m, down_deg, hfov_deg;
@@ -23,6 +26,7 @@ static const int woods_band_plane[woods_bands] = {picture_optical, picture_mwir,
 
 typedef struct WoodsBench {
     Bench     *bench;
+    unsigned   parts, views; /* bits: that are asked for */
     int        width, height, trees;
     double     east_m, north_m;
     LocalFrame frame;
@@ -33,6 +37,8 @@ typedef struct WoodsBench {
     Pool      *one, *many;
     Arena     *arena[3];
 } WoodsBench;
+
+static inline bool woods_wants(const WoodsBench *w, WoodsPart part) { return w->parts >> part & 1; }
 
 /* One frame of a detail. scene: NULL: the bench's own. */
 typedef struct WoodsFrame {
@@ -49,12 +55,18 @@ View woods_view(const WoodsBench *w, int v);
 /* samples x samples rays in every pixel, no others; all bands, all truth. */
 RenderRequest woods_request(const WoodsBench *w, int v, int samples);
 
-/* Height in the picture just below which every plant is in the representation that is judged. */
-double woods_change_px(void);
 /* Whether a pixel's `instance` is a standing plant. */
 static inline bool woods_is_standing(uint32_t instance) { return instance && !((instance - 1) & forest_low_bit); }
 
 double woods_processor_s(void);
+
+/* Sums of squared differences b - a of pixels and of means over blocks of 4 px, of those where `of` is not 0 (NULL:
+ * all).
+ */
+void woods_add_squares(double sum[2], const float *a, const float *b, const uint8_t *of, int width, int height);
+
+/* A forest of another kind in the place of a detail's. */
+Status woods_replace(WoodsBench *w, int detail, const ForestConfig *config);
 
 /* ---- rows ----------------------------------------------------------------------------------------- */
 
@@ -106,5 +118,6 @@ Status woods_stages(WoodsBench *w, int v);  /* woods_timings.c */
 Status woods_errors(WoodsBench *w, int v);  /* woods_errors.c: pictures beside many rays in full detail */
 Status woods_targets(WoodsBench *w);        /* woods_targets.c: vehicles among plants, recognisers */
 Status woods_flight(WoodsBench *w);         /* woods_flight.c: changes of representation on the way to an impact */
+Status woods_far_end(WoodsBench *w);        /* woods_far_end.c: where plants of pages end */
 
 #endif

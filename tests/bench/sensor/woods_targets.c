@@ -234,6 +234,7 @@ Status woods_targets(WoodsBench *w)
     WoodsRings *rings = calloc(1, sizeof *rings);
     Status      status = rings ? STATUS_OK : STATUS_NO_MEMORY;
     for (int v = bench_quick(w->bench) ? woods_views - 1 : 0; v < woods_views && status == STATUS_OK; v++) {
+        if (!(w->views >> v & 1)) continue;
         WoodsCrowd crowd;
         status = open_crowd(&crowd, w, v);
         if (status == STATUS_OK) status = look_at_vehicles(&crowd);
