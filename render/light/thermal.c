@@ -43,7 +43,7 @@ static inline double emission_w_m2_k(double emissivity, double temp_k)
     return 4 * emissivity * 5.670374419184429e-8 * temp_k * temp_k * temp_k;
 }
 
-/* Of a leaf, or leaves in arrays: as thermal_leaf_k. */
+/* What the temperature of one leaf follows from, as thermal_leaf_k has it. */
 typedef struct Leaf {
     double air_k, vapour_pa; /* vapour_pa: saturation over water there */
     double open, lit, absorptance, emissivity;
