@@ -1,5 +1,5 @@
-/* Steps of sampling (RenderRequest.sampling): what a frame says of its own error at each step, against frames of many rays.
- * Which pixels have rays: test_sampling_steps.c. labels: slow */
+/* Steps of sampling (RenderRequest.sampling): what a frame says of its own error at each step, against frames of many
+ * rays. Which pixels have rays: test_sampling_steps.c. labels: slow */
 #include "tests/sensor/error_scenes.h"
 
 static const ErrorScene scenes[] = {
