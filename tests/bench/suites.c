@@ -119,10 +119,10 @@ static const BenchSuite suites[] = {
      .run = bench_speed_radar},
     {.name = "woods",
      .room = "sensor",
-     .options = "trees=N: at most; 3000000",
+     .options = "trees=N: at most; 3000000,rows=all|seeker: all of them or those of two cameras and a radar; all",
      .help =
          "frames of three million trees over 192 M posts, in full detail and by tables of far plants: time, and what the "
-         "latter costs in pictures, vehicles seen, a flight, recognisers",
+         "latter costs in pictures, vehicles seen, a flight, recognisers; a frame of two cameras and a radar",
      .run = bench_woods,
      .check = bench_woods_check,
      .reads =

@@ -200,10 +200,22 @@ static Status read_trees(double *number, const Bench *bench)
     return STATUS_BAD_VALUE;
 }
 
+/* Whether the rows of the seeker alone are asked for. */
+static Status read_rows(bool *seeker, const Bench *bench)
+{
+    const char *rows = bench_option(bench, "rows");
+    *seeker = rows && strcmp(rows, "seeker") == 0;
+    if (!rows || *seeker || strcmp(rows, "all") == 0) return STATUS_OK;
+    log_error("bench: --rows: '%s' is not all or seeker", rows);
+    return STATUS_BAD_VALUE;
+}
+
 Status bench_woods_check(const Bench *bench)
 {
-    double number;
-    return read_trees(&number, bench);
+    double       number;
+    bool         seeker;
+    const Status status = read_rows(&seeker, bench);
+    return status == STATUS_OK ? read_trees(&number, bench) : status;
 }
 
 static Status open_bench(WoodsBench *w)
@@ -239,18 +251,22 @@ static Status say_memories(WoodsBench *w)
 
 static Status time_all(WoodsBench *w)
 {
+    bool   seeker = false;
     Status status = open_bench(w);
+    if (status == STATUS_OK) status = read_rows(&seeker, w->bench);
     if (status == STATUS_OK) status = make_ground(w);
     if (status == STATUS_OK) status = make_vehicles(w);
     if (status == STATUS_OK) status = make_woods(w);
     if (status == STATUS_OK) status = make_forest(w, 0);
-    if (status == STATUS_OK) status = say_memories(w);
+    if (status == STATUS_OK && !seeker) status = say_memories(w);
     if (status == STATUS_OK) status = make_forest(w, 1);
+    if (status == STATUS_OK && seeker) return woods_seeker(w);
     for (int v = 0; v < woods_views && status == STATUS_OK; v++) {
         status = woods_timings(w, v);
         if (status == STATUS_OK) status = woods_errors(w, v);
     }
     for (int v = 0; v < woods_views && status == STATUS_OK; v++) status = woods_stages(w, v);
+    if (status == STATUS_OK) status = woods_seeker(w);
     if (status == STATUS_OK) status = woods_targets(w);
     if (status == STATUS_OK) status = woods_flight(w);
     woods_say(w, "memory: at most in the whole bench", bench_memory_mb("VmHWM:"), "MB");

@@ -105,6 +105,7 @@ Status woods_timings(WoodsBench *w, int v); /* woods_timings.c: frames, default 
 Status woods_stages(WoodsBench *w, int v);  /* woods_timings.c */
 Status woods_errors(WoodsBench *w, int v);  /* woods_errors.c: pictures beside many rays in full detail */
 Status woods_targets(WoodsBench *w);        /* woods_targets.c: vehicles among plants, recognisers */
+Status woods_seeker(WoodsBench *w);         /* woods_seeker.c: two cameras and a radar */
 Status woods_flight(WoodsBench *w);         /* woods_flight.c: changes of representation on the way to an impact */
 
 #endif
