@@ -4,6 +4,7 @@
 #include "sensor/detector/transform.h"
 #include "render/scattering/paths/radar_path.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 
 /* ---- waveforms ------------------------------------------------------------------------------- */
@@ -263,30 +264,71 @@ double interval_receiver_noise_w(const Receiver *receiver, const Waveform *wave)
     return radar_noise_w(waveform_noise_hz(wave), receiver->noise_figure);
 }
 
-static void add_noise(Interval *interval, double sigma, uint64_t seed, uint32_t stream, uint32_t number)
+/* A row of one channel, a pulse or burst, after another. */
+typedef struct Reception {
+    Interval       *interval;
+    const Receiver *receiver;
+    double          sigma; /* of noise, in I and in Q */
+    uint64_t        seed;
+    uint32_t        stream, number;
+    double          last, gain; /* of the converter: its greatest count, counts per sqrt(W) */
+    pthread_mutex_t lock;       /* of what follows */
+    double          peak;
+    long            saturated;
+} Reception;
+
+static void run_rows(Reception *r, PoolTask *row)
+{
+    const int rows = interval_channels * r->interval->wave.pulses;
+    if (r->interval->pool) pool_run(r->interval->pool, rows, row, r);
+    else
+        for (int i = 0; i < rows; i++) row(r, 0, i);
+}
+
+static void add_noise(double complex *row, const Reception *r, size_t first, size_t count)
 {
     enum { block = 512 };
-    const size_t count = interval_channels * (size_t)interval->wave.pulses * (size_t)interval->wave.samples;
-    double       draw[2 * block];
-    for (size_t first = 0; first < count; first += block) {
-        const size_t n = count - first < block ? count - first : block;
-        random_normals(draw, 2 * n, seed, stream, number, 2 * first);
-        for (size_t i = 0; i < n; i++) interval->sample[first + i] += sigma * (draw[2 * i] + I * draw[2 * i + 1]);
+    double draw[2 * block];
+    for (size_t done = 0; done < count; done += block) {
+        const size_t n = count - done < block ? count - done : block;
+        random_normals(draw, 2 * n, r->seed, r->stream, r->number, 2 * (first + done));
+        for (size_t i = 0; i < n; i++) row[done + i] += r->sigma * (draw[2 * i] + I * draw[2 * i + 1]);
     }
 }
 
-/* A pulse is a row, but of a stepped burst each sample. */
-static void add_phase_noise(Interval *interval, double sigma, uint64_t seed, uint32_t stream, uint32_t number)
+/* From pulse to pulse, the same in all channels; of a stepped burst each sample is a pulse. */
+static void add_phase_noise(double complex *row, const Reception *r, int pulse)
 {
-    const Waveform *wave = &interval->wave;
+    const Waveform *wave = &r->interval->wave;
     const int       length = wave->kind == WAVEFORM_STEPPED ? 1 : wave->samples;
-    const size_t    plane = (size_t)wave->pulses * (size_t)wave->samples;
-    for (size_t first = 0; first < plane; first += (size_t)length) {
-        const double         phase = sigma * random_normal(seed, stream, number, first / (size_t)length);
+    const size_t    first = (size_t)pulse * (size_t)wave->samples;
+    for (int at = 0; at < wave->samples; at += length) {
+        const double phase = r->receiver->phase_noise_rad *
+                             random_normal(r->seed, r->stream + 1, r->number, (first + (size_t)at) / (size_t)length);
         const double complex turn = cos(phase) + I * sin(phase);
-        for (int c = 0; c < interval_channels; c++)
-            for (int i = 0; i < length; i++) interval->sample[(size_t)c * plane + first + (size_t)i] *= turn;
+        for (int i = 0; i < length; i++) row[at + i] *= turn;
     }
+}
+
+static void receive_row(void *user, int worker, int task)
+{
+    Reception      *r = user;
+    const Receiver *of = r->receiver;
+    const size_t    samples = (size_t)r->interval->wave.samples, first = (size_t)task * samples;
+    double complex *v = r->interval->sample + first;
+    double          peak = 0;
+    (void)worker;
+    if (of->phase_noise_rad > 0) add_phase_noise(v, r, task % r->interval->wave.pulses);
+    add_noise(v, r, first, samples);
+    if (of->iq_gain != 0 || of->iq_phase_rad != 0) {
+        const double across = (1 + of->iq_gain) * sin(of->iq_phase_rad),
+                     along = (1 + of->iq_gain) * cos(of->iq_phase_rad);
+        for (size_t i = 0; i < samples; i++) v[i] = creal(v[i]) + I * (along * cimag(v[i]) - across * creal(v[i]));
+    }
+    for (size_t i = 0; i < samples; i++) peak = fmax(peak, fmax(fabs(creal(v[i])), fabs(cimag(v[i]))));
+    pthread_mutex_lock(&r->lock);
+    r->peak = fmax(r->peak, peak);
+    pthread_mutex_unlock(&r->lock);
 }
 
 static double to_counts(double x, double last, long *saturated)
@@ -297,29 +339,41 @@ static double to_counts(double x, double last, long *saturated)
     return clamp(count, -last - 1, last);
 }
 
-void interval_receive(ReceiverReport *report, Interval *interval, const Receiver *r, uint64_t seed, uint32_t stream,
-                      uint32_t number)
+static void convert_row(void *user, int worker, int task)
 {
-    const Waveform *wave = &interval->wave;
-    const size_t    count = interval_channels * (size_t)wave->pulses * (size_t)wave->samples;
-    double complex *v = interval->sample;
-    *report = (ReceiverReport){.noise_w = interval_receiver_noise_w(r, wave), .counts_per_sqrt_w = 1};
-    const double sigma = sqrt(report->noise_w / 2); /* of I, and of Q */
+    Reception      *r = user;
+    const int       samples = r->interval->wave.samples;
+    const double    gain = r->gain, last = r->last;
+    double complex *v = r->interval->sample + (size_t)task * (size_t)samples;
+    long            saturated = 0;
+    (void)worker;
+    for (int i = 0; i < samples; i++)
+        v[i] = to_counts(gain * creal(v[i]), last, &saturated) / gain +
+               I * (to_counts(gain * cimag(v[i]), last, &saturated) / gain);
+    if (saturated == 0) return;
+    pthread_mutex_lock(&r->lock);
+    r->saturated += saturated;
+    pthread_mutex_unlock(&r->lock);
+}
 
-    if (r->phase_noise_rad > 0) add_phase_noise(interval, r->phase_noise_rad, seed, stream + 1, number);
-    add_noise(interval, sigma, seed, stream, number);
-    if (r->iq_gain != 0 || r->iq_phase_rad != 0) {
-        const double across = (1 + r->iq_gain) * sin(r->iq_phase_rad), along = (1 + r->iq_gain) * cos(r->iq_phase_rad);
-        for (size_t i = 0; i < count; i++) v[i] = creal(v[i]) + I * (along * cimag(v[i]) - across * creal(v[i]));
+void interval_receive(ReceiverReport *report, Interval *interval, const Receiver *receiver, uint64_t seed,
+                      uint32_t stream, uint32_t number)
+{
+    *report = (ReceiverReport){.noise_w = interval_receiver_noise_w(receiver, &interval->wave), .counts_per_sqrt_w = 1};
+    Reception r = {.interval = interval,
+                   .receiver = receiver,
+                   .sigma = sqrt(report->noise_w / 2),
+                   .seed = seed,
+                   .stream = stream,
+                   .number = number,
+                   .lock = PTHREAD_MUTEX_INITIALIZER};
+    run_rows(&r, receive_row);
+    if (receiver->bits > 0) {
+        r.last = ldexp(1, receiver->bits - 1) - 1;
+        r.gain = fmin(receiver->noise_counts / r.sigma, r.peak > 0 ? 0.9 * r.last / r.peak : INFINITY);
+        run_rows(&r, convert_row);
+        report->saturated = r.saturated;
+        report->counts_per_sqrt_w = r.gain;
     }
-    if (r->bits == 0) return;
-
-    const double last = ldexp(1, r->bits - 1) - 1;
-    double       peak = 0;
-    for (size_t i = 0; i < count; i++) peak = fmax(peak, fmax(fabs(creal(v[i])), fabs(cimag(v[i]))));
-    const double gain = fmin(r->noise_counts / sigma, peak > 0 ? 0.9 * last / peak : INFINITY);
-    for (size_t i = 0; i < count; i++)
-        v[i] = to_counts(gain * creal(v[i]), last, &report->saturated) / gain +
-               I * (to_counts(gain * cimag(v[i]), last, &report->saturated) / gain);
-    report->counts_per_sqrt_w = gain;
+    pthread_mutex_destroy(&r.lock);
 }

@@ -100,6 +100,7 @@ enum { CHANNEL_SUM, CHANNEL_RIGHT, CHANNEL_DOWN, CHANNEL_CROSS, interval_channel
 typedef struct Interval {
     Waveform        wave;
     double complex *sample; /* [channels][pulses][samples] */
+    Pool           *pool;   /* of the receiver; NULL: one thread */
 } Interval;
 
 /* Windowed and transformed: rows of Doppler, from approaching (negative rate of path) to receding, columns of range,

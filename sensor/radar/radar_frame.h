@@ -99,6 +99,17 @@ typedef struct RadarTruth {
 
 /* ---- the frame -------------------------------------------------------------------------------------- */
 
+/* What a measurement's time goes into, in order. */
+typedef enum RadarStep {
+    RADAR_PREPARE, /* aim, air, the foliage by direction */
+    RADAR_TARGETS, /* entities' centres, what is hidden of them */
+    RADAR_GROUND,
+    RADAR_VOLUMES, /* plants, chaff */
+    RADAR_ECHOES,  /* of all points into the samples, rain too */
+    RADAR_PROCESS, /* receiver, map, detections; positions of a beam that scans */
+    RADAR_STEPS
+} RadarStep;
+
 typedef struct RadarFrame {
     const RadarPreset *preset;
     double             reference_m, reference_rate_mps; /* the middle of the range window, and how it moves */
@@ -120,12 +131,12 @@ typedef struct RadarFrame {
     int                targets;
     const RadarTruth  *target;
     ReceiverReport     receiver;
-    const RadarSector *scan;            /* NULL: the beam stares */
-    int    ground_cells, ground_hidden; /* scatterers of the ground; how many of them relief or entities hide */
-    double rain_1_m;                    /* backscatter of rain by its volume, m2/m3 */
-    int    echoes;                      /* of entities, before any goes by way of the ground */
-    int    crowns, clouds;              /* plants, and clouds of chaff, within beam and window */
-    double spent_s;                     /* wall clock */
+    const RadarSector *scan;             /* NULL: the beam stares */
+    int    ground_cells, ground_hidden;  /* scatterers of the ground; how many of them relief or entities hide */
+    double rain_1_m;                     /* backscatter of rain by its volume, m2/m3 */
+    int    echoes;                       /* of entities, before any goes by way of the ground */
+    int    crowns, clouds;               /* plants, and clouds of chaff, within beam and window */
+    double spent_s, step_s[RADAR_STEPS]; /* wall clock */
 } RadarFrame;
 
 #endif

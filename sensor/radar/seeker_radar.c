@@ -133,6 +133,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     signatures_destroy(r->signatures);
     signature_library_close(r->library);
     given_list_close(r->given);
+    leaf_cache_destroy(r->leaves);
     foliage_destroy(r->foliage);
     radar_materials_close(&r->materials);
     if (r->catalog) catalog_close(r->catalog);
@@ -267,8 +268,10 @@ static bool echo_of(Echo *e, const RadarShot *beam, const RadarPoint *q)
     v3_add_scaled(p, q->p_enu, q->own ? 0 : beam->after_s, q->v_enu_mps);
     shot_sight(&sight, beam, p, q->room_m);
     if (!sight.within || shot_off_axis(beam, &sight) > q->widest) return false;
+    const double volume_np = shot_volume_np(beam, &sight);
+    if (volume_np > gone_np) return false;
     const ScatterMatrix s = {.hh = q->same, .vv = q->same, .hv = q->other, .vh = q->other};
-    shot_amplitudes(e->amplitude, beam, &sight, &s);
+    shot_amplitudes_through(e->amplitude, beam, &sight, &s, volume_np);
     for (int k = 0; k < interval_channels; k++) e->amplitude[k] *= q->share;
     e->path_m = q->path_m;
     e->path_per_pulse_m = q->path_per_pulse_m;
@@ -312,6 +315,7 @@ Status shot_echoes(RadarShot *beam, bool sum_alone)
     SeekerRadar *r = beam->radar;
     const int    lasting = r->points.count, from = beam->after_s == 0 ? 0 : r->target_points;
     Status       status = shot_rain(beam);
+    if (beam->after_s != 0) shot_volume_fan(beam);
     if (status == STATUS_OK && beam->after_s != 0) status = shot_targets_anew(beam);
     if (status != STATUS_OK || beam->missing > 0) return status;
     for (int first = from; first < r->points.count; first += beam_batch) {
@@ -389,12 +393,21 @@ static Status process(RadarShot *shot, const Interval *interval)
     return indicate_moving(shot, detection);
 }
 
+/* Says when a step is over; *begun_s: when it began. */
+static void note_step(RadarShot *shot, RadarStep step, double *begun_s)
+{
+    const double now_s = wall_clock_s();
+    shot->frame->step_s[step] = now_s - *begun_s;
+    *begun_s = now_s;
+}
+
 /* The order of work in a shot. */
 static Status make(RadarShot *shot)
 {
+    double                 begun_s = wall_clock_s();
     const RadarScene      *scene = shot->scene;
     const Waveform        *wave = &shot->preset->wave;
-    Interval               interval = {.wave = *wave};
+    Interval               interval = {.wave = *wave, .pool = shot->pool};
     Visibility            *visibility;
     const double          *p = scene->view->p_enu;
     const VisibilityConfig seen = {.tracer = scene->world->tracer,
@@ -415,22 +428,29 @@ static Status make(RadarShot *shot)
     follow(shot);
     status = air_between(shot);
     if (status == STATUS_OK) status = shot_volume_open(shot);
+    note_step(shot, RADAR_PREPARE, &begun_s);
     if (status == STATUS_OK) status = shot_targets(shot);
+    note_step(shot, RADAR_TARGETS, &begun_s);
     if (shot->missing > 0) return status;
     if (status == STATUS_OK && shot->radar->ground && scene->world->landscape) status = shot_ground(shot);
+    note_step(shot, RADAR_GROUND, &begun_s);
     if (status == STATUS_OK) status = shot_volume(shot);
     if (status == STATUS_OK) status = visibility_status(visibility);
+    note_step(shot, RADAR_VOLUMES, &begun_s);
     if (status != STATUS_OK) return status;
     RadarShot beam;
     shot_position(&beam, shot, 0, 0);
     status = shot_echoes(&beam, false);
     if (status != STATUS_OK) return status;
     echo_sum(interval.sample, shot->radar->echoes);
+    note_step(shot, RADAR_ECHOES, &begun_s);
     if (wave->uncompensated) shot->frame->reference_rate_mps = 0; /* it is in every echo */
     interval_receive(&shot->frame->receiver, &interval, &shot->preset->receiver, shot->radar->seed, stream_noise,
                      scene->number);
     status = process(shot, &interval);
-    return status == STATUS_OK && shot->radar->sector_pulse ? shot_sector(shot, &interval) : status;
+    if (status == STATUS_OK && shot->radar->sector_pulse) status = shot_sector(shot, &interval);
+    note_step(shot, RADAR_PROCESS, &begun_s);
+    return status;
 }
 
 Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool,

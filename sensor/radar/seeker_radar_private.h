@@ -5,14 +5,17 @@
  *     radar_coarse.c   coarse signatures, and what is prepared of them
  *     shot_sight.c     the way from the antenna to a place, and what stands before it
  *     shot_targets.c   points of entities
- *     shot_ground.c    points of the ground, and of entities by way of it
+ *     shot_merge.c     fewer of them where the radar tells few apart
+ *     shot_ground.c    points of the ground
+ *     shot_bounce.c    echoes of entities by way of it
  *     shot_volume.c    points of rain, foliage and chaff, and what these weaken
  *     shot_sector.c    further positions of a beam that scans, and their pictures */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_PRIVATE_H
 #define SENSOR_RADAR_SEEKER_RADAR_PRIVATE_H
 
 #include "render/scattering/clutter/clutter.h"
-#include "render/scattering/clutter/foliage.h"
+#include "render/scattering/clutter/foliage_fan.h"
+#include "render/scattering/clutter/leaf_cache.h"
 #include "render/scattering/paths/ground_bounce.h"
 #include "render/scattering/paths/radar_path.h"
 #include "render/scattering/signatures/centres.h"
@@ -73,6 +76,7 @@ struct SeekerRadar {
     ClutterCache     *drawn; /* NULL without ground */
     ClutterBand       band;
     Foliage          *foliage; /* of the world's plants; NULL: none stand */
+    LeafCache        *leaves;  /* drawn of its crowns; NULL: no foliage */
     GasLines          gases;
     RadarAir          air;
     EchoGrid         *echoes;
@@ -108,6 +112,7 @@ typedef struct RadarShot {
     double                   widest;                      /* sine off the axis beyond which entities are left out */
     double                   air_np_m;                    /* power, one way, 1/m */
     int                      missing;                     /* entities whose signatures are still to be made */
+    FoliageFan              *fan;                         /* foliage by direction; NULL: none is */
     const struct ChaffCloud *chaff;                       /* [chaff_count] */
     int                      chaff_count;
     double                   base_m; /* height of the ground at the reference, ENU */
@@ -144,6 +149,14 @@ double shot_appears_m(const RadarShot *shot, const Sight *sight, double range_ra
 void shot_amplitudes(double complex amplitude[interval_channels], const RadarShot *shot, const Sight *sight,
                      const ScatterMatrix *s);
 
+/* The same, where the loss by foliage and chaff is known: shot_volume_np. */
+void shot_amplitudes_through(double complex amplitude[interval_channels], const RadarShot *shot, const Sight *sight,
+                             const ScatterMatrix *s, double volume_np);
+
+/* An echo that foliage and chaff weaken by more than 40 dB each way is left out: all of them together are 80 dB below
+ * what the same points return in the open. Nepers of power, one way. */
+static const double gone_np = 9.2103403719761836;
+
 /* Sine off the axis of the main lobe's null. */
 double shot_null(const RadarShot *shot);
 /* Where relief, a plant or an entity is met more than slack_m[i] before the place that sight[i] leads to from from_enu.
@@ -171,25 +184,50 @@ typedef struct Target {
 /* Velocity of a point of a node, ENU: that of the entity, of its turning, and of what spins and rolls on it. node -1:
  * the point is on no node. */
 void shot_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
+/* Whether a node, or one that it is on, turns by itself: it rolls, or spins, as the entity moves forward. */
+bool shot_target_spins(const Target *target, int node, double forward_mps);
 /* Adds the echoes of entities to the radar's points, and their truth to the frame. */
 Status shot_targets(RadarShot *shot);
 /* Adds the points of entities in one position of the sector. */
 Status shot_targets_anew(RadarShot *beam);
 
+/* ---- shot_merge.c ---------------------------------------------------------------------------------- */
+
+/* What tells echoes apart: path, its growth from pulse to pulse, cosines along right and down. */
+enum { merge_axes = 4 };
+
+/* The points of a target, among those of the radar. */
+typedef struct TargetPoints {
+    int first, count;
+    const double (*x)[merge_axes]; /* [count] */
+    const bool *spins;             /* [count]: on a part that turns by itself */
+} TargetPoints;
+
+/* Makes them fewer, in their place. */
+void shot_merge_points(TargetPoints *points, const RadarShot *shot);
+/* The same of echoes of one target, which have the antenna's pattern in them: by path and its growth alone, so that
+ * they need not be near each other in direction. Returns how many are left. */
+int shot_merge_echoes(Echo *echo, const bool *spins, int count, const RadarShot *shot);
+
 /* ---- shot_ground.c --------------------------------------------------------------------------------- */
 
 /* Adds the echoes of the ground. */
 Status shot_ground(RadarShot *shot);
+/* The rectangle in plan around what the main lobe lights within the window. */
+void shot_lit_rectangle(double low_m[2], double high_m[2], const RadarShot *shot);
+
+/* ---- shot_bounce.c ---------------------------------------------------------------------------------- */
+
 /* Adds the echoes of an entity by way of the ground, whose field is direct without it (body bases), and their
  * truth. With signatures missing it asks for its own alone. */
 Status shot_bounce(RadarShot *shot, const Target *target, const ScatterMatrix *direct, RadarTruth *truth);
-/* The rectangle in plan around what the main lobe lights within the window. */
-void shot_lit_rectangle(double low_m[2], double high_m[2], const RadarShot *shot);
 
 /* ---- shot_volume.c --------------------------------------------------------------------------------- */
 
 /* Finds the foliage and chaff that weaken all echoes on their way; called before any echo. */
 Status shot_volume_open(RadarShot *shot);
+/* Lists the foliage about the beam's axis, from where its antenna is, for its many echoes; no bit depends on it. */
+void shot_volume_fan(RadarShot *beam);
 /* Loss by foliage and chaff on the way to a sight's place, in nepers of power, one way. */
 double shot_volume_np(const RadarShot *shot, const Sight *sight);
 /* Adds the echoes of foliage and chaff to the radar's points. */

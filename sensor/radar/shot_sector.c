@@ -285,7 +285,7 @@ static Status measure_positions(SectorWork *w, Interval *middle)
     const SectorPlan *plan = &w->sector->plan;
     const Waveform   *wave = &middle->wave;
     SeekerRadar      *r = shot->radar;
-    Interval          interval = {.wave = *wave};
+    Interval          interval = {.wave = *wave, .pool = shot->pool};
     ReceiverReport    report;
     keep_position(w, middle, plan->positions / 2);
     interval.sample = middle->sample; /* not needed any more */

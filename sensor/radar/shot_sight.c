@@ -43,10 +43,16 @@ double shot_appears_m(const RadarShot *shot, const Sight *sight, double range_ra
 void shot_amplitudes(double complex amplitude[interval_channels], const RadarShot *shot, const Sight *sight,
                      const ScatterMatrix *s)
 {
+    shot_amplitudes_through(amplitude, shot, sight, s, shot_volume_np(shot, sight));
+}
+
+void shot_amplitudes_through(double complex amplitude[interval_channels], const RadarShot *shot, const Sight *sight,
+                             const ScatterMatrix *s, double volume_np)
+{
     const RadarPreset *p = shot->preset;
     const AntennaGain  gain = antenna_gain(&p->antenna, sight->cos_right, sight->cos_down);
     const RadarLink    link = {p->power_w, 1, 1, p->antenna.wavelength_m, sight->range_m, p->loss};
-    const double       through_np = shot->air_np_m * sight->range_m + shot_volume_np(shot, sight);
+    const double       through_np = shot->air_np_m * sight->range_m + volume_np;
     const double       unit =
         sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * through_np)) * waveform_share(&p->wave, sight->range_m);
     const double complex same = unit * gain.sum * (p->transmits_h ? s->hh : s->vv);
@@ -79,30 +85,68 @@ static Sight raised(const RadarShot *shot, const double from_enu[3], const Sight
     return out;
 }
 
+/* Rays from one place, of a thread. */
+typedef struct SightRays {
+    Rays       rays;
+    EntityHits none; /* of an entity that is not asked */
+    double     met_m[hits_capacity];
+    uint32_t   met[hits_capacity];
+    int        of[hits_capacity]; /* place that a ray is of */
+} SightRays;
+
+/* Marks the places before which something is met; own: that entity is no obstacle. */
+static void mark_hidden(bool *hidden, SightRays *s, const RadarShot *shot, const double *range_m, const double *slack_m,
+                        RayEntities among, int own)
+{
+    VisibilityCounters counters = {0};
+    visibility_first_range(s->met_m, s->met, shot->visibility, &s->rays, among, &counters);
+    for (int i = 0; i < s->rays.count; i++) {
+        const int at = s->of[i];
+        hidden[at] =
+            s->met_m[i] < INFINITY && range_m[at] - s->met_m[i] > slack_m[at] && (own < 0 || (int)s->met[i] != own + 1);
+    }
+}
+
 void shot_hidden(bool *hidden, const RadarShot *shot, const double from_enu[3], const Sight *sight,
                  const double *slack_m, int count, int own)
 {
-    static _Thread_local Rays rays;
-    static _Thread_local Hits hits;
-    VisibilityCounters        counters = {0};
-    rays.count = count;
-    rays.columns = 0;
-    rays.bent = true;
+    static _Thread_local SightRays s;
+    static const double            more_m = 1e-6; /* a ray searches on past its slack by so much, for rounding */
+    double                         range_m[hits_capacity];
+    RayEntities                    among = visibility_all_but(shot->scene->hidden);
+    s.rays.count = count;
+    s.rays.columns = 0;
+    s.rays.bent = true;
     for (int i = 0; i < count; i++) {
         const Sight to = raised(shot, from_enu, &sight[i]);
-        hidden[i] = false;
-        rays.far_m[i] = to.range_m;
+        s.of[i] = i;
+        range_m[i] = to.range_m;
+        s.rays.far_m[i] = slack_m[i] > more_m ? fmax(to.range_m - slack_m[i] + more_m, 0) : to.range_m;
         for (int k = 0; k < 3; k++) {
-            rays.o_enu[k][i] = from_enu[k];
-            rays.d_enu[k][i] = to.d_enu[k];
+            s.rays.o_enu[k][i] = from_enu[k];
+            s.rays.d_enu[k][i] = to.d_enu[k];
         }
     }
-    visibility_first_hit(&hits, shot->visibility, &rays, visibility_all_but(shot->scene->hidden), &counters);
-    for (int i = 0; i < hits.count; i++) {
-        const int  ray = hit_ray(&hits, i);
-        const bool before = hits.kind[i] != hit_sky && rays.far_m[ray] - hits.range_m[i] > slack_m[ray];
-        if (before && (own < 0 || (int)hits.entity[i] != own + 1)) hidden[ray] = true;
+    if (own < 0) {
+        mark_hidden(hidden, &s, shot, range_m, slack_m, among, own);
+        return;
     }
+    /* where nothing else is met, the entity itself is not asked: it would hide nothing */
+    s.none.entity = own;
+    for (int i = 0; i < count; i++) s.none.range_m[i] = INFINITY;
+    among.known = &s.none;
+    mark_hidden(hidden, &s, shot, range_m, slack_m, among, own);
+    int left = 0;
+    for (int i = 0; i < count; i++) {
+        if (!hidden[i]) continue;
+        s.of[left] = i;
+        s.rays.far_m[left] = s.rays.far_m[i];
+        for (int k = 0; k < 3; k++) s.rays.d_enu[k][left] = s.rays.d_enu[k][i];
+        left++;
+    }
+    s.rays.count = left;
+    among.known = NULL;
+    if (left > 0) mark_hidden(hidden, &s, shot, range_m, slack_m, among, own);
 }
 
 /* ---- which scattering centres of an entity are in sight, past relief, plants and other entities ------ */

@@ -1,148 +1,6 @@
-/* sensor/radar/shot_targets.c: the echoes of entities: their scattering centres, each with the motion of its part,
- * as fewer echoes where the radar tells few of them apart. */
+/* sensor/radar/shot_targets.c: the echoes of entities: their scattering centres, each with the motion of its part. */
 #include "sensor/radar/seeker_radar_private.h"
 #include "render/scattering/paths/radar_path.h"
-
-/* ---- fewer echoes of a target than it has scattering centres ------------------------------------------ */
-
-/* A target that is far, small or met by little bandwidth needs fewer.
- *
- * Its points are shared out to the nodes of a grid over what tells them apart: delay, range rate, and the two
- * angles of the antenna's pattern; linearly, each with the phase of its own path at the middle of band and
- * interval. Nodes are so close that a phase changes by 0.4 rad from one to the next at the ends of band and
- * interval, and u of the pattern (antenna.h) by 0.25: an error of up to 2 % of a point's amplitude (an eighth of
- * the square) along each axis, 0.6 % rms over the band. An axis along which they part by less than 0.1 rad in all
- * has one node (up to 5 %): a target that nothing resolves is one echo. Where nodes are not far fewer than points,
- * and on parts that spin or roll, points stay. bench precision has the time it saves, and its error. */
-enum { axes = 4, worth = 2 };
-static const double step_rad[axes] = {0.4, 0.4, 0.25, 0.25}, together_rad = 0.1;
-
-typedef struct Axis {
-    double low, high, scale; /* rad of phase, or u, over its unit */
-    int    nodes;
-} Axis;
-
-/* Lays the grid over the points' spans. False: it would need too many nodes. */
-static bool grid_over(Axis axis[axes], size_t *nodes, int count)
-{
-    *nodes = 1;
-    for (int a = 0; a < axes; a++) {
-        const double span = axis[a].scale * (axis[a].high - axis[a].low);
-        axis[a].nodes = span <= together_rad ? 1 : span < 1e6 ? 1 + (int)ceil(span / step_rad[a]) : 1000000;
-        *nodes *= (size_t)axis[a].nodes;
-        if (*nodes > (size_t)count / worth) return false;
-    }
-    return true;
-}
-
-static double node_at(const Axis *axis, int i)
-{
-    return axis->nodes == 1 ? 0.5 * (axis->low + axis->high)
-                            : axis->low + (axis->high - axis->low) * i / (axis->nodes - 1);
-}
-
-/* Makes a node that holds nothing yet: a point like those of the target, at the node's place. */
-static RadarPoint node_of(const Axis axis[axes], size_t number, const RadarPoint *like, const RadarShot *shot)
-{
-    int        at[axes];
-    RadarPoint out = *like;
-    double     along[3];
-    for (int a = 0; a < axes; a++) at[a] = (int)(number % (size_t)axis[a].nodes), number /= (size_t)axis[a].nodes;
-    out.path_m = node_at(&axis[0], at[0]);
-    out.path_per_pulse_m = node_at(&axis[1], at[1]);
-    const double right = node_at(&axis[2], at[2]), down = node_at(&axis[3], at[3]);
-    v3_scale(along, sqrt(fmax(1 - right * right - down * down, 0)), shot->ahead);
-    v3_add_scaled(along, along, right, shot->right);
-    v3_add_scaled(along, along, down, shot->down);
-    v3_add_scaled(out.p_enu, shot->p_enu, shot->reference_m + 0.5 * out.path_m, along);
-    out.same = out.other = 0;
-    return out;
-}
-
-static double lost_on_the_way(const RadarShot *shot, const RadarPoint *p)
-{
-    Sight to;
-    if (!shot->radar->foliage && shot->chaff_count == 0) return 0;
-    shot_sight(&to, shot, p->p_enu, 0);
-    return shot_volume_np(shot, &to);
-}
-
-/* Adds a point to the nodes about it. */
-static void share_out(RadarPoint *node, const double *lost_np, const Axis axis[axes], const RadarShot *shot,
-                      const RadarPoint *p, const double x[axes])
-{
-    const double   k = 2 * pi_rad * shot->preset->wave.centre_hz / light_mps, own_np = lost_on_the_way(shot, p);
-    double         weight[axes][2];
-    double complex turn[2] = {0};
-    size_t         first = 0, stride[axes], next = 1;
-    for (int a = 0; a < axes; a++) {
-        const int    last = axis[a].nodes - 1;
-        const double at = last > 0 ? clamp((x[a] - axis[a].low) / (axis[a].high - axis[a].low), 0, 1) * last : 0;
-        const int    low = at < last ? (int)at : last - (last > 0);
-        weight[a][1] = last > 0 ? at - low : 0;
-        weight[a][0] = 1 - weight[a][1];
-        stride[a] = next;
-        first += (size_t)low * next;
-        next *= (size_t)axis[a].nodes;
-        for (int side = 0; side < 2 && a == 0; side++) {
-            const double phase = -k * (p->path_m - node_at(&axis[a], low + side));
-            turn[side] = CMPLX(cos(phase), sin(phase));
-        }
-    }
-    for (int corner = 0; corner < 1 << axes; corner++) {
-        double size = 1;
-        size_t i = first;
-        for (int a = 0; a < axes; a++) {
-            size *= weight[a][corner >> a & 1];
-            i += (corner >> a & 1 && axis[a].nodes > 1) ? stride[a] : 0;
-        }
-        if (size == 0) continue;
-        if (lost_np[i] != own_np) size *= exp(lost_np[i] - own_np);
-        const double re = size * creal(turn[corner & 1]), im = size * cimag(turn[corner & 1]);
-        node[i].same += CMPLX(creal(p->same) * re - cimag(p->same) * im, creal(p->same) * im + cimag(p->same) * re);
-        node[i].other +=
-            CMPLX(creal(p->other) * re - cimag(p->other) * im, creal(p->other) * im + cimag(p->other) * re);
-    }
-}
-
-/* Makes fewer echoes of a target's, where the radar tells few of them apart; returns how many are left. x: their paths,
- * growth of the paths, cosines to the right and down; spins: those whose part does. */
-static int merge_points(RadarPoint *point, const double (*x)[axes], const bool *spins, int count, const RadarShot *shot)
-{
-    const Waveform *wave = &shot->preset->wave;
-    const double    k = 2 * pi_rad * wave->centre_hz / light_mps;
-    const double    reach = antenna_u_per_sine(&shot->preset->antenna);
-    const double    scale[axes] = {pi_rad * wave->bandwidth_hz / light_mps, 0.5 * k * wave->pulses, reach, reach};
-    Axis            axis[axes];
-    size_t          nodes;
-    int             still = 0;
-    for (int a = 0; a < axes; a++) axis[a] = (Axis){INFINITY, -INFINITY, scale[a], 1};
-    for (int i = 0; i < count; i++) {
-        if (spins[i]) continue;
-        still++;
-        for (int a = 0; a < axes; a++) {
-            if (x[i][a] < axis[a].low) axis[a].low = x[i][a];
-            if (x[i][a] > axis[a].high) axis[a].high = x[i][a];
-        }
-    }
-    if (still < 2 || !grid_over(axis, &nodes, still)) return count;
-    RadarPoint *node = arena_alloc(shot->arena, nodes, sizeof *node);
-    double     *lost_np = arena_alloc(shot->arena, nodes, sizeof *lost_np);
-    if (!node || !lost_np) return count; /* no less right */
-    for (size_t i = 0; i < nodes; i++) {
-        node[i] = node_of(axis, i, &point[0], shot);
-        lost_np[i] = lost_on_the_way(shot, &node[i]);
-    }
-    for (int i = 0; i < count; i++)
-        if (!spins[i]) share_out(node, lost_np, axis, shot, &point[i], x[i]);
-    int kept = 0;
-    /* first those that spin: nodes are fewer than the points that leave room for them */
-    for (int i = 0; i < count; i++)
-        if (spins[i]) point[kept++] = point[i];
-    for (size_t i = 0; i < nodes; i++)
-        if (node[i].same != 0 || node[i].other != 0) point[kept++] = node[i];
-    return kept;
-}
 
 /* ---- polarisation and motion ---------------------------------------------------------------------- */
 
@@ -163,8 +21,7 @@ static double spin_of(const Target *t, int node, double forward_mps)
                                           : 0;
 }
 
-/* Whether a node, or one that it is on, turns by itself. */
-static bool spins(const Target *t, int node, double forward_mps)
+bool shot_target_spins(const Target *t, int node, double forward_mps)
 {
     for (int n = node; n >= 0; n = t->of->node[n].parent)
         if (spin_of(t, n, forward_mps) != 0) return true;
@@ -240,7 +97,7 @@ typedef struct CentreJob {
     const int           *shown;  /* [points]: the centres in sight */
     RadarPoint          *point;  /* [points] */
     bool                *spins;  /* [points] */
-    double (*x)[axes];
+    double (*x)[merge_axes];
     double h_enu[3], v_enu[3];
     int    count, points;
 } CentreJob;
@@ -341,7 +198,7 @@ static void point_block(void *user, int worker, int task)
         shot_sight(&to, shot, q->p_enu, 0);
         const int node = c->part < 0 ? -1 : t->of->part[c->part].node;
         shot_target_velocity(q->v_enu_mps, t, node, c->p);
-        job->spins[i] = spins(t, node, ahead_mps[0]);
+        job->spins[i] = shot_target_spins(t, node, ahead_mps[0]);
         q->same = job->view[job->shown[i]].same;
         q->other = job->view[job->shown[i]].other;
         q->share = 1;
@@ -350,7 +207,8 @@ static void point_block(void *user, int worker, int task)
         q->widest = shot->widest + room_m / job->sight->range_m;
         q->room_m = room_m;
         q->own = shot->after_s != 0;
-        memcpy(job->x[i], (double[axes]){q->path_m, q->path_per_pulse_m, to.cos_right, to.cos_down}, sizeof job->x[i]);
+        memcpy(job->x[i], (double[merge_axes]){q->path_m, q->path_per_pulse_m, to.cos_right, to.cos_down},
+               sizeof job->x[i]);
     }
 }
 
@@ -362,7 +220,8 @@ static void in_blocks(CentreJob *job, int count, void (*block)(void *user, int w
         for (int b = 0; b < blocks; b++) block(job, 0, b);
 }
 
-static Status add_target(RadarShot *shot, Target *t, const Sight *sight, RadarTruth *truth)
+/* points: the target's, among those of the radar, to be made fewer once all are there. */
+static Status add_target(RadarShot *shot, Target *t, const Sight *sight, RadarTruth *truth, TargetPoints *points)
 {
     SeekerRadar  *r = shot->radar;
     ScatterMatrix field;
@@ -397,7 +256,9 @@ static Status add_target(RadarShot *shot, Target *t, const Sight *sight, RadarTr
     for (int i = 0; i < job.count; i++)
         if (seen[i]) shown[job.points++] = i;
     in_blocks(&job, job.points, point_block);
-    r->points.count += shot->scene->apart ? job.points : merge_points(job.point, job.x, job.spins, job.points, shot);
+    *points = (TargetPoints){
+        .first = r->points.count, .count = job.points, .x = (const double(*)[merge_axes])job.x, .spins = job.spins};
+    r->points.count += job.points;
     return truth->given || !(truth->visible > 0) ? STATUS_OK : shot_bounce(shot, t, &field, truth);
 }
 
@@ -431,20 +292,58 @@ static Status take_target(bool *taken, RadarShot *shot, Target *t, Sight *sight)
     return STATUS_OK;
 }
 
+typedef struct MergeJob {
+    const RadarShot *shot;
+    TargetPoints    *points; /* [targets] */
+} MergeJob;
+
+static void merge_target(void *user, int worker, int task)
+{
+    const MergeJob *job = user;
+    (void)worker;
+    shot_merge_points(&job->points[task], job->shot);
+}
+
+/* Makes the points of each target fewer, and closes the gaps. */
+static void merge_targets(RadarShot *shot, TargetPoints *points, int count)
+{
+    RadarPoints *all = &shot->radar->points;
+    MergeJob     job = {shot, points};
+    if (shot->scene->apart || count == 0) return;
+    if (shot->pool) pool_run(shot->pool, count, merge_target, &job);
+    else
+        for (int i = 0; i < count; i++) merge_target(&job, 0, i);
+    all->count = points[0].first;
+    for (int i = 0; i < count; i++) {
+        memmove(all->point + all->count, all->point + points[i].first, (size_t)points[i].count * sizeof *all->point);
+        all->count += points[i].count;
+    }
+}
+
 static Status each_target(RadarShot *shot, RadarTruth **truth, int *count)
 {
+    enum { waiting_most = 1 << 18 }; /* points that wait to be made fewer together */
     const Snapshot *snapshot = shot->scene->snapshot;
     Status          status = STATUS_OK;
+    int             merged = 0; /* targets whose points are fewer by now */
+    TargetPoints   *points = arena_alloc(shot->arena, (size_t)snapshot->count + 1, sizeof *points);
     *truth = arena_alloc(shot->arena, (size_t)snapshot->count + 1, sizeof **truth);
     *count = 0;
-    if (!*truth) return STATUS_NO_MEMORY;
+    if (!*truth || !points) return STATUS_NO_MEMORY;
     for (int i = 0; i < snapshot->count && status == STATUS_OK; i++) {
         Target t = {.entity = &snapshot->entity[i], .index = i};
         Sight  sight;
         bool   taken;
         status = take_target(&taken, shot, &t, &sight);
-        if (status == STATUS_OK && taken) status = add_target(shot, &t, &sight, &(*truth)[(*count)++]);
+        if (status != STATUS_OK || !taken) continue;
+        points[*count].first = shot->radar->points.count;
+        status = add_target(shot, &t, &sight, &(*truth)[*count], &points[*count]);
+        ++*count;
+        if (status != STATUS_OK || shot->radar->points.count - points[merged].first < waiting_most) continue;
+        merge_targets(shot, points + merged, *count - merged);
+        merged = *count;
     }
+    if (status == STATUS_OK) merge_targets(shot, points + merged, *count - merged);
     return status;
 }
 

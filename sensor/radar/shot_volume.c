@@ -205,10 +205,25 @@ static const double sight_slack_m = 0.05;
 
 typedef struct Canopy {
     const int    *crown;
+    CrownLeaves **kept; /* of each crown; NULL: not kept */
     int           each;
     double        null;
     ClutterMotion motion[SURFACE_COUNT];
 } Canopy;
+
+/* Places a scatterer of a crown: even over the spheroid. */
+static void place_leaf(CrownLeaf *out, const SeekerRadar *r, uint32_t index, int number)
+{
+    const FoliageCrown *crown = foliage_crown(r->foliage, (int)index);
+    const double       *origin = foliage_origin(r->foliage);
+    const double        across = (double)crown->across_m, up = (double)crown->up_m;
+    double              u[3];
+    for (uint64_t k = 0; k < 3; k++) u[k] = random_uniform(r->seed, stream_leaf, index, 3 * (uint64_t)number + k);
+    const double radius = cbrt(u[0]), z = 2 * u[1] - 1, level = sqrt(1 - z * z), turn = 2 * pi_rad * u[2];
+    out->p_enu[0] = origin[0] + (double)crown->centre_m[0] + across * radius * level * cos(turn);
+    out->p_enu[1] = origin[1] + (double)crown->centre_m[1] + across * radius * level * sin(turn);
+    out->p_enu[2] = origin[2] + (double)crown->centre_m[2] + up * radius * z;
+}
 
 static int make_crown(RadarPoint *out, const RadarShot *shot, void *user, int task)
 {
@@ -216,8 +231,9 @@ static int make_crown(RadarPoint *out, const RadarShot *shot, void *user, int ta
     const Canopy                    *canopy = user;
     const SeekerRadar               *r = shot->radar;
     const uint32_t                   index = (uint32_t)canopy->crown[task];
+    CrownLeaves                     *kept = canopy->kept[task];
     const FoliageCrown              *crown = foliage_crown(r->foliage, (int)index);
-    const double                    *origin = foliage_origin(r->foliage), *eye = shot->scene->view->p_enu;
+    const double                    *eye = shot->scene->view->p_enu;
     const ClutterRow                *row = &r->clutter.row[crown->surface][r->band];
     const double                     across = (double)crown->across_m, up = (double)crown->up_m;
     const double      sigma_m2 = clutter_foliage_volume(row) * 4 / 3.0 * pi_rad * across * across * up / canopy->each;
@@ -225,26 +241,36 @@ static int make_crown(RadarPoint *out, const RadarShot *shot, void *user, int ta
     int               count = 0;
     for (int i = 0; i < canopy->each; i++) {
         VolumePoint *to = &point[count];
-        double       u[3], p[3];
-        for (uint64_t k = 0; k < 3; k++) u[k] = random_uniform(r->seed, stream_leaf, index, 3 * (uint64_t)i + k);
-        const double radius = cbrt(u[0]), z = 2 * u[1] - 1, level = sqrt(1 - z * z), turn = 2 * pi_rad * u[2];
-        p[0] = origin[0] + (double)crown->centre_m[0] + across * radius * level * cos(turn);
-        p[1] = origin[1] + (double)crown->centre_m[1] + across * radius * level * sin(turn);
-        p[2] = origin[2] + (double)crown->centre_m[2] + up * radius * z;
-        shot_sight(&to->sight, shot, p, 0);
+        CrownLeaf    own, *leaf = kept ? &kept->leaf[i] : &own;
+        const bool   fresh = !kept || i >= kept->drawn;
+        if (fresh) place_leaf(leaf, r, index, i);
+        if (fresh && kept) clutter_draw_leaf(&leaf->scatterer, row, r->seed, index, (uint32_t)i);
+        shot_sight(&to->sight, shot, leaf->p_enu, 0);
         if (!to->sight.within || shot_off_axis(shot, &to->sight) > canopy->null) continue;
-        ClutterScatterer leaf;
-        clutter_draw_leaf(&leaf, row, r->seed, index, (uint32_t)i);
-        clutter_see_leaf(&to->s, &leaf, &canopy->motion[crown->surface], sigma_m2, p, &look);
+        if (!kept) clutter_draw_leaf(&leaf->scatterer, row, r->seed, index, (uint32_t)i);
+        clutter_see_leaf(&to->s, &leaf->scatterer, &canopy->motion[crown->surface], sigma_m2, leaf->p_enu, &look);
         to->turns = true;
         memset(to->v_enu_mps, 0, sizeof to->v_enu_mps);
         count++;
     }
+    if (kept && kept->drawn < canopy->each) kept->drawn = canopy->each;
     return count > 0 ? keep_seen(out, point, count, shot, sight_slack_m, canopy->null) : 0;
 }
 
-/* So many points a crown that some four are in each step of range across the widest of them, fewer where there would be
- * too many of them: by powers of two. */
+/* So many points a crown that some four are in each step of range across the widest of them, or that each step of the
+ * window has some 48 of all crowns that one position of the beam lights: amplitudes are Gaussian, so that their number
+ * changes no law of the speckle, and by so many a step's mean power is off by a seventh (rms). Fewer where there would
+ * be too many of them; by powers of two. */
+static double points_wanted(const RadarShot *shot, int lit, double widest_m)
+{
+    enum { a_crown_step = 4, a_step = 48 };
+    const Waveform *wave = &shot->preset->wave;
+    const double    cell_m = 0.5 * light_mps / wave->bandwidth_hz, lobe_rad = asin(shot_null(shot));
+    const double    at_once = lit * lobe_rad / (lobe_rad + shot->sector_half_rad);
+    const double    want = fmin(a_crown_step * 2 * widest_m / cell_m, a_step * (double)wave->samples / at_once);
+    return fmin(want, (double)leaf_points_most / lit);
+}
+
 static Status add_canopy(RadarShot *shot)
 {
     const SeekerRadar *r = shot->radar;
@@ -271,12 +297,16 @@ static Status add_canopy(RadarShot *shot)
     if (lit == 0) return STATUS_OK;
     canopy.crown = crown;
     canopy.each = least_each;
-    const double cell_m = 0.5 * light_mps / shot->preset->wave.bandwidth_hz;
-    const double want = fmin(4 * 2 * widest_m / cell_m, (double)leaf_points_most / lit);
+    const double want = points_wanted(shot, lit, widest_m);
     while (canopy.each < want && canopy.each < most_each) canopy.each *= 2;
     for (int s = 0; s < SURFACE_COUNT; s++)
         canopy.motion[s] = clutter_motion(&r->clutter.row[s][r->band], shot->preset->wave.centre_hz, r->wind_mps);
     shot->frame->crowns = lit;
+    canopy.kept = arena_alloc(shot->arena, (size_t)lit, sizeof *canopy.kept);
+    if (!canopy.kept) return STATUS_NO_MEMORY;
+    if (shot->radar->leaves) leaf_cache_begin(shot->radar->leaves);
+    for (int i = 0; i < lit && shot->radar->leaves; i++)
+        canopy.kept[i] = leaf_cache_crown(shot->radar->leaves, (uint32_t)crown[i], canopy.each);
     return add_points(shot, lit, canopy.each, make_crown, &canopy);
 }
 
@@ -386,21 +416,43 @@ Status shot_volume_open(RadarShot *shot)
     SeekerRadar *r = shot->radar;
     const Woods *woods = world->forest ? forest_woods(world->forest) : NULL;
     if (r->foliage && (!woods || foliage_woods(r->foliage) != woods)) {
+        leaf_cache_destroy(r->leaves);
         foliage_destroy(r->foliage);
+        r->leaves = NULL;
         r->foliage = NULL;
     }
     if (woods && !r->foliage && r->in_band) {
         const Status status = foliage_create(&r->foliage, woods, forest_plants(world->forest), &r->clutter, r->band);
         if (status != STATUS_OK) return status;
+        if (r->ground && leaf_cache_create(&r->leaves) != STATUS_OK) return STATUS_NO_MEMORY;
     }
+    shot_volume_fan(shot);
     return find_chaff(shot);
+}
+
+void shot_volume_fan(RadarShot *beam)
+{
+    static const double room_m = 50; /* beyond the window: of entities that reach out of it */
+    const SeekerRadar  *r = beam->radar;
+    const double        sine = fmin(1.05 * beam->widest + 0.01, 0.7);
+    FoliageFanOf        of = {.half = sine / sqrt(1 - sine * sine), .far_m = beam->far_m + beam->sweep_m + room_m};
+    beam->fan = NULL;
+    if (!r->foliage || !r->ground) return; /* without ground there are few echoes */
+    for (int k = 0; k < 3; k++) {
+        of.o_enu[k] = beam->p_enu[k];
+        of.axis[0][k] = beam->right[k], of.axis[1][k] = beam->down[k], of.axis[2][k] = beam->ahead[k];
+    }
+    foliage_fan_create(&beam->fan, r->foliage, &of, beam->arena);
 }
 
 double shot_volume_np(const RadarShot *shot, const Sight *sight)
 {
     double np = 0;
     if (shot->radar->foliage)
-        np = foliage_loss_db(NULL, shot->radar->foliage, shot->p_enu, sight->d_enu, sight->range_m) * log(10) / 10;
+        np = (foliage_fan_is_from(shot->fan, shot->p_enu)
+                  ? foliage_fan_loss_db(shot->fan, sight->d_enu, sight->range_m)
+                  : foliage_loss_db(NULL, shot->radar->foliage, shot->p_enu, sight->d_enu, sight->range_m)) *
+             log(10) / 10;
     return shot->chaff_count > 0 ? np + chaff_np(shot, sight) : np;
 }
 

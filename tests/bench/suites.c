@@ -119,11 +119,11 @@ static const BenchSuite suites[] = {
      .run = bench_speed_radar},
     {.name = "woods",
      .room = "sensor",
-     .options = "trees=N: at most; 3000000,parts=WORDS: times errors vehicles flight; some of them joined by +,"
+     .options = "trees=N: at most; 3000000,parts=WORDS: times errors vehicles flight seeker; some of them joined by +,"
                 "views=DIGITS: of 1234",
      .help =
          "frames of three million trees over 192 M posts, in full detail and by tables of far plants: time, and what the "
-         "latter costs in pictures, vehicles seen, a flight, recognisers",
+         "latter costs in pictures, vehicles seen, a flight, recognisers; a frame of two cameras and a radar",
      .run = bench_woods,
      .check = bench_woods_check,
      .reads =

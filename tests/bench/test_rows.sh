@@ -128,6 +128,8 @@ woods)
             done
         done
     done
+    rows "seeker: optical, 8-12 um, radar, with truth, all threads.*planes and map of one thread, nothing skipped\",yes," \
+        "seeker: optical, 1 thread" "seeker: radar, 1 thread: echoes summed"
     rows "memory: with frames of all views, full detail.*,yes," "woods: set-up of tables" "memory: with a forest of tables" \
         "tables: visible share of vehicles, as in frames" "tables: visible share of vehicles, by its plants alone" \
         "tables, red: false alarms" "tables, 8-12 um: false alarms" "tables: vehicles by their surroundings: AUC" \

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 #include "tests/render/hand_plants.h"
 
-#include "render/scattering/clutter/foliage.h"
+#include "render/scattering/clutter/foliage_fan.h"
 
 enum { plants = 3000, side = 5 }; /* squares of the woods */
 
@@ -116,6 +116,62 @@ static void rays_above_lose_nothing(void **state)
     CHECK(foliage_loss_db(NULL, foliage, (const double[3]){200, 0, 100}, (const double[3]){0, 0, -1}, 30) == 0);
 }
 
+/* A direction within the cone of half, or twice as wide. */
+static void direction_in(double d[3], const FoliageFanOf *of, double half, uint64_t i)
+{
+    const double right = half * (2 * random_uniform(3, 0, 0, i) - 1),
+                 down = half * (2 * random_uniform(3, 1, 0, i) - 1);
+    for (int k = 0; k < 3; k++) d[k] = of->axis[2][k] + right * of->axis[0][k] + down * of->axis[1][k];
+    v3_normalize(d, d);
+}
+
+/* A fan lists crowns by direction; rays of it lose what they lose without it, to the bit: from afar, from within the
+ * woods, from above, rolled, in wide cones and narrow ones, also where they leave the cone. */
+static void a_fan_changes_no_bit(void **state)
+{
+    (void)state;
+    static const struct {
+        double from_m[3], azimuth, down, roll, half, far_m;
+    } fans[] = {{{-700, 120, 70}, 90, 5, 0, 0.08, 1100},
+                {{-700, 120, 70}, 90, 5, 0, 0.3, 1100},
+                {{160, 160, 9}, 200, 2, 30, 0.5, 300}, /* among the crowns */
+                {{160, 160, 120}, 10, 70, -45, 0.4, 200},
+                {{330, -40, 25}, 320, 10, 0, 1, 500}};
+    Arena *arena = arena_create();
+    CHECK(arena);
+    for (size_t n = 0; n < sizeof fans / sizeof *fans; n++) {
+        const double a = fans[n].azimuth * rad_per_deg, e = fans[n].down * rad_per_deg, r = fans[n].roll * rad_per_deg;
+        const double level[3] = {cos(a), -sin(a), 0}, ahead[3] = {sin(a) * cos(e), cos(a) * cos(e), -sin(e)};
+        double       below[3];
+        FoliageFanOf of = {.half = fans[n].half, .far_m = fans[n].far_m};
+        FoliageFan  *fan;
+        int          met = 0;
+        v3_cross(below, ahead, level);
+        for (int k = 0; k < 3; k++) {
+            of.o_enu[k] = origin[k] + fans[n].from_m[k];
+            of.axis[0][k] = cos(r) * level[k] + sin(r) * below[k];
+            of.axis[1][k] = cos(r) * below[k] - sin(r) * level[k];
+            of.axis[2][k] = ahead[k];
+        }
+        foliage_fan_create(&fan, foliage, &of, arena);
+        CHECK(fan && foliage_fan_is_from(fan, of.o_enu) && !foliage_fan_is_from(fan, origin));
+        for (uint64_t i = 0; i < 4000; i++) {
+            double d[3];
+            direction_in(d, &of, (i % 10 == 0 ? 2 : 1) * of.half, i);
+            const double range_m = (i % 17 == 0 ? 1.1 : 1) * of.far_m * (0.5 + 0.5 * random_uniform(3, 2, 0, i));
+            const double got = foliage_fan_loss_db(fan, d, range_m);
+            const double want = foliage_loss_db(NULL, foliage, of.o_enu, d, range_m);
+            CHECK(memcmp(&got, &want, sizeof got) == 0);
+            met += want > 0;
+        }
+        printf("fan %zu: %d rays of 4000 meet foliage\n", n, met);
+        CHECK(met > 50);
+        arena_reset(arena);
+    }
+    arena_destroy(arena);
+    CHECK(!foliage_fan_is_from(NULL, origin));
+}
+
 static void every_crown_is_found_once(void **state)
 {
     (void)state;
@@ -142,6 +198,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lengths_are_those_of_a_march),
         cmocka_unit_test(rays_above_lose_nothing),
+        cmocka_unit_test(a_fan_changes_no_bit),
         cmocka_unit_test(every_crown_is_found_once),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -471,6 +471,23 @@ static void same_hits(const Hits *a, const Hits *b)
     assert_memory_equal(a->surface, b->surface, n * sizeof a->surface[0]);
 }
 
+/* Ranges alone are those of the hits; also of rays that end before, at or behind what they would meet. */
+static void same_ranges(Visibility *skip, Visibility *all, int hidden)
+{
+    static double   range_m[hits_capacity];
+    static uint32_t entity[hits_capacity];
+    const size_t    n = (size_t)rays.count;
+    for (int limited = 0; limited < 3; limited++) {
+        for (int i = 0; i < rays.count && limited; i++)
+            rays.far_m[i] = (limited == 1 ? 0.9 : hand_uniform(0.5, 1.3)) * fmin(hits.range_m[i], 300);
+        visibility_first_range(range_m, entity, skip, &rays, visibility_all_but(hidden), &stage.counters);
+        visibility_first_hit(&other_hits, all, &rays, visibility_all_but(hidden), &stage.counters);
+        assert_memory_equal(range_m, other_hits.range_m, n * sizeof *range_m);
+        assert_memory_equal(entity, other_hits.entity, n * sizeof *entity);
+    }
+    for (int i = 0; i < rays.count; i++) rays.far_m[i] = INFINITY;
+}
+
 static void skipping_changes_no_bit(void **state)
 {
     (void)state;
@@ -504,6 +521,7 @@ static void skipping_changes_no_bit(void **state)
             same_hits(&hits, &other_hits);
             visibility_first_hit(&other_hits, skip, &rays, visibility_all_but(hidden), &stage.counters);
             same_hits(&hits, &other_hits);
+            same_ranges(skip, all, hidden);
             visibility_shadow(shadow, skip, &hits, sun, &stage.counters);
             visibility_shadow(other_shadow, all, &hits, sun, &stage.counters);
             assert_memory_equal(shadow, other_shadow, (size_t)rays.count);

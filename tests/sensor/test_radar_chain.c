@@ -240,9 +240,34 @@ static void lobes_of_equal_weights_are_dirichlets(void **state)
         }
 }
 
+/* Each row of a channel has draws of its own, so that the receiver's threads change no bit. */
+static void threads_change_no_bit(void **state)
+{
+    (void)state;
+    static double complex other[interval_channels * cells];
+    const Receiver        receiver = {.noise_figure = 6,
+                                      .phase_noise_rad = 0.02,
+                                      .iq_gain = 0.01,
+                                      .iq_phase_rad = 0.02,
+                                      .bits = 8,
+                                      .noise_counts = 40};
+    const Point           point = {.range_m = 3, .range_rate_mps = -2, .cos_right = 0.01, .rcs_m2 = 0.1};
+    Interval              interval[2] = {{.wave = wave, .sample = sample}, {.wave = wave, .sample = other}};
+    ReceiverReport        report[2];
+    CHECK(pool_create(&interval[1].pool, 3) == STATUS_OK);
+    for (int k = 0; k < 2; k++) {
+        add_points(&interval[k], &point, 1);
+        interval_receive(&report[k], &interval[k], &receiver, 5, 7, 11);
+    }
+    CHECK(memcmp(sample, other, sizeof sample) == 0 && report[0].saturated == report[1].saturated);
+    CHECK(report[0].counts_per_sqrt_w == report[1].counts_per_sqrt_w && report[0].counts_per_sqrt_w != 1);
+    pool_destroy(interval[1].pool);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(signal_to_noise_is_the_radar_equations),
         cmocka_unit_test(lobes_of_equal_weights_are_dirichlets),
         cmocka_unit_test(points_are_measured),

@@ -144,7 +144,7 @@ static void woods_have_the_power_of_their_integral(void **state)
     (void)state;
     const Weather weather = weather_default();
     double        got_w = 0, canopy_w = 0, ground_w = 0, bare_w = 0;
-    enum { seeds = 4 };
+    enum { seeds = 8 };
     for (uint64_t seed = 1; seed <= seeds; seed++) {
         SeekerRadar *radar = open_radar(seed, true);
         RadarScene   scene = look(-asin(250 / reference_m), 250, (uint32_t)seed, &weather);

@@ -67,6 +67,12 @@ static void a_cell_is_seen_by_its_middle(void **state)
     /* of the box itself: what it hides of itself is in its list already */
     look(seen, 7, at, weight[0], 0, 0);
     for (int i = 0; i < 7; i++) CHECK(seen[i]);
+    /* nor does another box behind its front, since a line ends at what it meets first; before it, it does */
+    scene_add(0, 0, 75, 0);
+    look(seen, 7, at, weight[0], 0, 0);
+    for (int i = 0; i < 7; i++) CHECK(seen[i]);
+    look(seen, 7, at, weight[0], 0, 1);
+    CHECK(seen[0] && !seen[4] && !seen[6]);
     /* what stands behind hides nothing */
     stage.snapshot.count = 0;
     scene_add(0, 0, 150, 0);

@@ -66,6 +66,7 @@ static int close_stage(void **state)
 {
     (void)state;
     echo_grid_destroy(radar.echoes);
+    leaf_cache_destroy(radar.leaves);
     foliage_destroy(radar.foliage);
     free(radar.batch);
     free(radar.points.point);
@@ -270,6 +271,25 @@ static void crowns_are_filled(void **state)
     const double n = 64.0 * whole;
     printf("%d crowns, %d whole: %.3f of their power, cross %.3f; r^3 %.3f, up^2 %.3f, east^2 %.3f\n", lit, whole,
            got_m2 / want_m2, other_m2 / want_other_m2, cubed / n, upright / n, along / n);
+    /* those kept from the shot before, and those that nothing was kept of, are the same */
+    const size_t octets = (size_t)radar.points.count * sizeof *radar.points.point;
+    RadarPoint  *before = malloc(octets);
+    CHECK(before && radar.leaves);
+    memcpy(before, radar.points.point, octets);
+    for (int kept = 1; kept >= 0; kept--) {
+        LeafCache *leaves = radar.leaves;
+        s = shot_of(&planted, 24);
+        CHECK(shot_volume_open(&s) == STATUS_OK);
+        radar.leaves = kept ? leaves : NULL;
+        CHECK(shot_volume(&s) == STATUS_OK && (size_t)radar.points.count * sizeof *before == octets);
+        for (int k = 0; k < radar.points.count; k++) {
+            const RadarPoint *a = &radar.points.point[k], *b = &before[k];
+            CHECK(memcmp(a->p_enu, b->p_enu, sizeof a->p_enu) == 0 && a->same == b->same && a->other == b->other &&
+                  a->path_m == b->path_m);
+        }
+        radar.leaves = leaves;
+    }
+    free(before);
     CHECK(frame.crowns == lit && some == radar.points.count && whole > 10 && whole < lit - 10);
     CHECK_NEAR(got_m2 / want_m2, 1, 0.08);
     CHECK_NEAR(other_m2 / want_other_m2, 1, 0.08);
@@ -291,6 +311,7 @@ static void crowns_are_filled(void **state)
     /* the least power of two, from 8, that is 8 of the widest crown's radii over a cell: 64 of 63, 128 of 65 */
     double widest_m = 0;
     int    of[2];
+    radar.preset.wave.samples = 128;
     for (int i = 0; i < plants; i++) widest_m = fmax(widest_m, (double)foliage_crown(radar.foliage, i)->across_m);
     for (int i = 0; i < 2; i++) {
         radar.preset.wave.bandwidth_hz = (i ? 65 : 63) * 0.5 * light_mps / (8 * widest_m);
@@ -300,6 +321,11 @@ static void crowns_are_filled(void **state)
     }
     CHECK_NEAR((double)of[0] / some, 1, 0.01);
     CHECK_NEAR((double)of[1] / some, 2, 0.05);
+    /* or that 48 crowns have 48 in each step of the window, whichever are fewer: of 64 steps 64 a crown */
+    radar.preset.wave.samples = 64;
+    s = shot_of(&planted, 24);
+    CHECK(shot_volume(&s) == STATUS_OK && frame.crowns == 48);
+    CHECK_NEAR((double)radar.points.count / some, 1, 0.01);
     radar.preset.wave.bandwidth_hz = 5e8;
     s = shot_of(&planted, 24);
     /* without ground no plants, and without woods no foliage */

@@ -1,22 +1,9 @@
-/* render/scattering/clutter/foliage.c: crowns in squares, the loss of a ray in them, and a crown's scatterers. */
-#include "render/scattering/clutter/foliage.h"
+/* render/scattering/clutter/foliage.c: crowns in squares, and the loss of a ray in them. */
+#include "render/scattering/clutter/foliage_private.h"
 
 #include <stdlib.h>
 
 enum { squares_most = 4000000 };
-
-struct Foliage {
-    const Woods  *woods;
-    double        origin_enu[3], wide_m[2];
-    int           count;
-    FoliageCrown *crown; /* [count] */
-    double        side_m;
-    int           nx, ny;
-    uint32_t     *first;  /* [nx * ny + 1] */
-    uint32_t     *listed; /* crowns that reach into a square, ascending */
-    float        *top_m;  /* [nx * ny]: of the highest of them, from the origin; -INFINITY: none */
-    double        db_m[SURFACE_COUNT];
-};
 
 /* ---- crowns -------------------------------------------------------------------------------------- */
 
@@ -45,13 +32,11 @@ typedef struct Reach {
     int x0, x1, y0, y1;
 } Reach;
 
-static int square_at(double m, double side_m, int count) { return (int)clamp(floor(m / side_m), 0, count - 1); }
-
 static Reach reach_of(const Foliage *f, const FoliageCrown *c)
 {
     const double x = (double)c->centre_m[0], y = (double)c->centre_m[1], r = (double)c->across_m;
-    return (Reach){square_at(x - r, f->side_m, f->nx), square_at(x + r, f->side_m, f->nx),
-                   square_at(y - r, f->side_m, f->ny), square_at(y + r, f->side_m, f->ny)};
+    return (Reach){foliage_square_at(x - r, f->side_m, f->nx), foliage_square_at(x + r, f->side_m, f->nx),
+                   foliage_square_at(y - r, f->side_m, f->ny), foliage_square_at(y + r, f->side_m, f->ny)};
 }
 
 static Status list_crowns(Foliage *f)
@@ -136,14 +121,16 @@ int foliage_in(int *index, int most, const Foliage *f, const double low_m[2], co
     double low[2], high[2];
     int    count = 0;
     for (int k = 0; k < 2; k++) low[k] = low_m[k] - f->origin_enu[k], high[k] = high_m[k] - f->origin_enu[k];
-    for (int y = square_at(low[1], f->side_m, f->ny); y <= square_at(high[1], f->side_m, f->ny); y++)
-        for (int x = square_at(low[0], f->side_m, f->nx); x <= square_at(high[0], f->side_m, f->nx); x++) {
+    for (int y = foliage_square_at(low[1], f->side_m, f->ny); y <= foliage_square_at(high[1], f->side_m, f->ny); y++)
+        for (int x = foliage_square_at(low[0], f->side_m, f->nx); x <= foliage_square_at(high[0], f->side_m, f->nx);
+             x++) {
             const size_t s = (size_t)y * (size_t)f->nx + (size_t)x;
             for (uint32_t at = f->first[s]; at < f->first[s + 1]; at++) {
                 const FoliageCrown *c = &f->crown[f->listed[at]];
                 const double        cx = (double)c->centre_m[0], cy = (double)c->centre_m[1];
                 /* a crown is listed in each square that it reaches into, and counted in the square of its middle */
-                if (square_at(cx, f->side_m, f->nx) != x || square_at(cy, f->side_m, f->ny) != y) continue;
+                if (foliage_square_at(cx, f->side_m, f->nx) != x || foliage_square_at(cy, f->side_m, f->ny) != y)
+                    continue;
                 if (!(cx >= low[0] && cx < high[0] && cy >= low[1] && cy < high[1])) continue;
                 if (count < most) index[count] = (int)f->listed[at];
                 count++;
@@ -154,53 +141,25 @@ int foliage_in(int *index, int most, const Foliage *f, const double low_m[2], co
 
 /* ---- along a ray --------------------------------------------------------------------------------- */
 
-/* A stretch of a ray between two distances from its start. The ray starts from the woods' origin. */
-typedef struct Stretch {
-    double o[3], d[3], from_m, to_m;
-} Stretch;
-
 /* Length of a stretch that is in a crown. */
 static double length_in(const FoliageCrown *c, const Stretch *s)
 {
     const double across = 1 / (double)c->across_m, up = 1 / (double)c->up_m;
-    double       p[3], d[3];
+    double       p[3], d[3], middle_m, half_m;
     for (int k = 0; k < 3; k++) {
         const double scale = k < 2 ? across : up;
         p[k] = (s->o[k] - (double)c->centre_m[k]) * scale;
         d[k] = s->d[k] * scale;
     }
-    const double dd = v3_dot(d, d), nearest = -v3_dot(p, d) / dd;
-    v3_add_scaled(p, p, nearest, d);
-    const double left = 1 - v3_dot(p, p);
-    if (!(left > 0)) return 0;
-    const double half = sqrt(left / dd);
-    return fmax(fmin(nearest + half, s->to_m) - fmax(nearest - half, s->from_m), 0);
+    return line_meets_crown(&middle_m, &half_m, p, d) ? stretch_within(middle_m, half_m, s->from_m, s->to_m) : 0;
 }
 
-/* Cuts a stretch to where one coordinate is between two values. */
-static void cut(Stretch *s, int axis, double low, double high)
-{
-    const double o = s->o[axis], d = s->d[axis];
-    if (d == 0) {
-        if (!(o >= low && o <= high)) s->to_m = s->from_m;
-        return;
-    }
-    const double a = (low - o) / d, b = (high - o) / d;
-    s->from_m = fmax(s->from_m, fmin(a, b));
-    s->to_m = fmin(s->to_m, fmax(a, b));
-}
-
-/* The part of a stretch in one square: a crown that reaches into several is met once along the whole. */
+/* The part of a ray in one square: a crown that reaches into several is met once along the whole. */
 static void add_square(double depth_m[SURFACE_COUNT], const Foliage *f, const Stretch *ray, int x, int y)
 {
     const size_t s = (size_t)y * (size_t)f->nx + (size_t)x;
-    Stretch      here = *ray;
-    if (f->first[s] == f->first[s + 1]) return;
-    /* crowns of the outermost squares may reach beyond them */
-    cut(&here, 0, x == 0 ? -INFINITY : x * f->side_m, x == f->nx - 1 ? INFINITY : (x + 1) * f->side_m);
-    cut(&here, 1, y == 0 ? -INFINITY : y * f->side_m, y == f->ny - 1 ? INFINITY : (y + 1) * f->side_m);
-    if (!(here.to_m > here.from_m)) return;
-    if (here.o[2] + fmin(here.d[2] * here.from_m, here.d[2] * here.to_m) >= (double)f->top_m[s]) return;
+    Stretch      here;
+    if (f->first[s] == f->first[s + 1] || !stretch_in_square(&here, f, ray, x, y)) return;
     for (uint32_t at = f->first[s]; at < f->first[s + 1]; at++) {
         const FoliageCrown *c = &f->crown[f->listed[at]];
         depth_m[c->surface] += length_in(c, &here);
@@ -209,26 +168,16 @@ static void add_square(double depth_m[SURFACE_COUNT], const Foliage *f, const St
 
 double foliage_loss_db(double *depth_m, const Foliage *f, const double o_enu[3], const double d_enu[3], double range_m)
 {
-    double  depth[SURFACE_COUNT] = {0}, db = 0, all_m = 0;
-    Stretch ray = {.to_m = range_m};
+    double  depth[SURFACE_COUNT] = {0};
+    Stretch ray;
+    int     first, last, west, east;
     if (depth_m) *depth_m = 0;
-    for (int k = 0; k < 3; k++) ray.o[k] = o_enu[k] - f->origin_enu[k], ray.d[k] = d_enu[k];
-    const double room_m = f->side_m; /* of crowns beyond the edge */
-    cut(&ray, 0, -room_m, f->nx * f->side_m + room_m);
-    cut(&ray, 1, -room_m, f->ny * f->side_m + room_m);
-    if (!(ray.to_m > ray.from_m) || f->count == 0) return 0;
+    if (!stretch_open(&ray, f, o_enu, d_enu, range_m)) return 0;
     /* row by row, the columns that the ray passes in each */
-    const double ya = ray.o[1] + ray.d[1] * ray.from_m, yb = ray.o[1] + ray.d[1] * ray.to_m;
-    const int    first = square_at(fmin(ya, yb), f->side_m, f->ny), last = square_at(fmax(ya, yb), f->side_m, f->ny);
+    stretch_rows(&first, &last, f, &ray);
     for (int y = first; y <= last; y++) {
-        Stretch row = ray;
-        cut(&row, 1, y == 0 ? -INFINITY : y * f->side_m, y == f->ny - 1 ? INFINITY : (y + 1) * f->side_m);
-        if (!(row.to_m > row.from_m)) continue;
-        const double xa = row.o[0] + row.d[0] * row.from_m, xb = row.o[0] + row.d[0] * row.to_m;
-        const int    west = square_at(fmin(xa, xb), f->side_m, f->nx), east = square_at(fmax(xa, xb), f->side_m, f->nx);
+        if (!stretch_columns(&west, &east, f, &ray, y)) continue;
         for (int x = west; x <= east; x++) add_square(depth, f, &ray, x, y);
     }
-    for (int s = 0; s < SURFACE_COUNT; s++) all_m += depth[s], db += depth[s] * f->db_m[s];
-    if (depth_m) *depth_m = all_m;
-    return all_m > 0 ? db * clutter_foliage_depth(all_m) / all_m : 0;
+    return foliage_db_of(depth_m, f, depth);
 }

@@ -67,7 +67,20 @@ static void ask_entry(double *range_m, TraceBlock *block, const ListedEntry *ent
     }
 }
 
-/* only: this entry alone; NULL: all. */
+/* Ranges of first hits, and which entry has them. only: this entry alone; NULL: all. */
+static void find_first(double *range_m, TraceBlock *block, const TraceEntry *only, unsigned char *found)
+{
+    const Visibility *v = block->v;
+    const int         count = block->rays->count;
+    memset(block->met, 0, (size_t)count);
+    for (int i = 0; i < count; i++) range_m[i] = INFINITY;
+    for (int k = 0; k < v->entries; k++) {
+        const int place = v->in_turn[k];
+        if (!only || v->entry[place].of == only) ask_entry(range_m, block, &v->entry[place], place, found);
+    }
+}
+
+/* only: as find_first. */
 static void first_hit(Hits *hits, TraceBlock *block, const TraceEntry *only)
 {
     const Visibility          *v = block->v;
@@ -81,12 +94,7 @@ static void first_hit(Hits *hits, TraceBlock *block, const TraceEntry *only)
     block->o_enu = o, block->d_enu = d;
     hits->count = count;
     hits->columns = rays->columns;
-    memset(block->met, 0, (size_t)count);
-    for (int i = 0; i < count; i++) hits->range_m[i] = INFINITY;
-    for (int k = 0; k < v->entries; k++) {
-        const int place = v->in_turn[k];
-        if (!only || v->entry[place].of == only) ask_entry(hits->range_m, block, &v->entry[place], place, found);
-    }
+    find_first(hits->range_m, block, only, found);
     clear_hits(hits);
     for (int i = 0; i < count; i++) {
         const bool sky = !block->met[i];
@@ -112,6 +120,22 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, Ray
     TraceBlock block;
     block.v = v, block.rays = rays, block.among = &among, block.counters = counters;
     first_hit(hits, &block, NULL);
+}
+
+void visibility_first_range(double *range_m, uint32_t *entity, const Visibility *v, const Rays *rays, RayEntities among,
+                            VisibilityCounters *counters)
+{
+    _Alignas(64) unsigned char found[trace_found_octets];
+    const double *const        o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const        d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    TraceBlock                 block;
+    block.v = v, block.rays = rays, block.among = &among, block.counters = counters;
+    block.o_enu = o, block.d_enu = d;
+    find_first(range_m, &block, NULL, found);
+    for (int i = 0; i < rays->count; i++) {
+        const ListedEntry *of = block.met[i] ? &v->entry[block.met[i] - 1] : NULL;
+        entity[i] = of && of->of == &trace_parts ? parts_found_entity(found + of->found, i) : 0;
+    }
 }
 
 void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, RayEntities among,

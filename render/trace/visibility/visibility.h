@@ -164,7 +164,10 @@ static inline RayEntities visibility_listed(const int *list, int count, int hidd
  * own. */
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, RayEntities among,
                           VisibilityCounters *counters);
-/* The same as if there were neither ground nor plants. */
+/* Their ranges alone, and the entity that is met, snapshot index + 1; 0: none. range_m INFINITY: nothing. */
+void visibility_first_range(double *range_m, uint32_t *entity, const Visibility *v, const Rays *rays, RayEntities among,
+                            VisibilityCounters *counters);
+/* First hits as if there were neither ground nor plants. */
 void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, RayEntities among,
                            VisibilityCounters *counters);
 

@@ -30,15 +30,15 @@ static uint64_t ground_hits(double *range_m, GroundHit *hit, const Visibility *v
     return together ? (uint64_t)rays->count : 0;
 }
 
-/* Whether every ray met something, and all of the ground is below all of them up to there. */
+/* Whether every ray ends, where it met something or is no longer searched, and all of the ground is below all of them
+ * up to there. */
 static bool ground_lies_below(const Visibility *v, const TraceBlock *block)
 {
-    const uint8_t             *met = block->met;
     const double *const *const o = block->o_enu, *const *const d = block->d_enu;
     const double *const until_m = block->limit_m;
     const int           count = block->rays->count;
     for (int i = 0; i < count; i++)
-        if (!met[i]) return false;
+        if (!(until_m[i] < INFINITY)) return false;
     for (int first = 0; first < count; first += clear_rays) {
         const int end = first + clear_rays < count ? first + clear_rays : count;
         double    start[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}, end_box[2][3];

@@ -6,6 +6,8 @@ typedef struct PartsFound {
     PartHit  hit[hits_capacity];
 } PartsFound;
 
+uint32_t parts_found_entity(const void *found, int ray) { return ((const PartsFound *)found)->entity[ray]; }
+
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag out:
  * no branches. */
 void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],

@@ -80,6 +80,8 @@ void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const
                       const double *limit_m, const double centre[3], double radius_m);
 
 extern const TraceEntry trace_ground, trace_parts; /* self: NULL */
+/* The entity that a ray met, snapshot index + 1, of what trace_parts found. */
+uint32_t parts_found_entity(const void *found, int ray);
 
 /* visibility_beyond.c: the Earth beyond the terrain's outline, where the eye may look there. */
 typedef struct RoundEarth RoundEarth;

@@ -204,7 +204,7 @@ double woods_processor_s(void)
 /* ---- the suite ----------------------------------------------------------------------------------- */
 
 /* What may be asked for by words. */
-static const char *const part_name[WOODS_PARTS] = {"times", "errors", "vehicles", "flight"};
+static const char *const part_name[WOODS_PARTS] = {"times", "errors", "vehicles", "flight", "seeker"};
 
 /* Bits of the words that are joined by +; all of them where the option is not given. */
 static Status read_parts(unsigned *parts, const Bench *bench)
@@ -216,7 +216,7 @@ static Status read_parts(unsigned *parts, const Bench *bench)
         int          k = 0;
         while (k < WOODS_PARTS && (strlen(part_name[k]) != length || memcmp(part_name[k], at, length) != 0)) k++;
         if (k == WOODS_PARTS) {
-            log_error("bench: --parts: '%s' is not some of times, errors, vehicles and flight, joined by +", text);
+            log_error("bench: --parts: '%s' is not some of times, errors, vehicles, flight and seeker, joined by +", text);
             return STATUS_BAD_VALUE;
         }
         *parts |= 1u << k;
@@ -305,6 +305,7 @@ static Status judge_all(WoodsBench *w)
 {
     const ForestConfig full = config_of(w, 0, false);
     Status             status = STATUS_OK;
+    if (!woods_wants(w, WOODS_ERRORS) && !woods_wants(w, WOODS_VEHICLES) && !woods_wants(w, WOODS_FLIGHT)) return status;
     if (!forest_config(w->forest[0]).all_fine) status = woods_replace(w, 0, &full);
     for (int v = 0; v < woods_views && status == STATUS_OK; v++)
         if (woods_wants(w, WOODS_ERRORS) && w->views >> v & 1) status = woods_errors(w, v);
@@ -324,6 +325,7 @@ static Status run_all(WoodsBench *w)
     if (status == STATUS_OK && woods_wants(w, WOODS_TIMES)) status = say_memories(w);
     if (status == STATUS_OK) status = make_forest(w, 1);
     if (status == STATUS_OK && woods_wants(w, WOODS_TIMES)) status = time_all(w);
+    if (status == STATUS_OK && woods_wants(w, WOODS_SEEKER)) status = woods_seeker(w);
     if (status == STATUS_OK) status = judge_all(w);
     woods_say(w, "memory: at most in the whole bench", bench_memory_mb("VmHWM:"), "MB");
     return status;

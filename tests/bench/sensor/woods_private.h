@@ -8,7 +8,7 @@
 enum { woods_views = 4, woods_vehicles = 20, woods_details = 2 /* full detail; the representation that is judged */ };
 
 /* Parts of the bench, each with its word for --parts: bits of WoodsBench.parts. */
-typedef enum WoodsPart { WOODS_TIMES, WOODS_ERRORS, WOODS_VEHICLES, WOODS_FLIGHT, WOODS_PARTS } WoodsPart;
+typedef enum WoodsPart { WOODS_TIMES, WOODS_ERRORS, WOODS_VEHICLES, WOODS_FLIGHT, WOODS_SEEKER, WOODS_PARTS } WoodsPart;
 
 typedef struct WoodsPose {
     const char *name;
@@ -117,6 +117,7 @@ Status woods_timings(WoodsBench *w, int v); /* woods_timings.c: frames, default 
 Status woods_stages(WoodsBench *w, int v);  /* woods_timings.c */
 Status woods_errors(WoodsBench *w, int v);  /* woods_errors.c: pictures beside many rays in full detail */
 Status woods_targets(WoodsBench *w);        /* woods_targets.c: vehicles among plants, recognisers */
+Status woods_seeker(WoodsBench *w);         /* woods_seeker.c: two cameras and a radar */
 Status woods_flight(WoodsBench *w);         /* woods_flight.c: changes of representation on the way to an impact */
 Status woods_far_end(WoodsBench *w);        /* woods_far_end.c: where plants of pages end */
 
