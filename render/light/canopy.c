@@ -18,11 +18,11 @@ double canopy_gap(double x)
     return sum / steps;
 }
 
-static double gap_at(const Canopy *c, double x)
+static double between_gaps(const float gap[gap_steps + 2], double x)
 {
     const double at = clamp(x / gap_most * gap_steps, 0, gap_steps - 1e-6);
     const int    i = (int)at;
-    return (double)c->gap[i] + (at - i) * ((double)c->gap[i + 1] - (double)c->gap[i]);
+    return (double)gap[i] + (at - i) * ((double)gap[i + 1] - (double)gap[i]);
 }
 
 /* ---- the woods' own light ---------------------------------------------------------------------- */
@@ -82,7 +82,8 @@ static void average(Canopy *c, const Woods *woods, const Plants *plants, const M
 
 /* ---- between runs ----------------------------------------------------------------------------- */
 
-_Static_assert(sizeof(CanopyCell) == 4 && sizeof(Plant) == 20, "no padding: the octets are the numbers");
+_Static_assert(sizeof(CanopyCell) == 4 && sizeof(CanopySky) == 3 && sizeof(Plant) == 20,
+               "no padding: the octets are the numbers");
 
 static size_t cells_of(const Canopy *c) { return (size_t)c->nx * (size_t)c->ny; }
 
@@ -90,7 +91,14 @@ void canopy_kept_values(Kept *kept, void *canopy)
 {
     Canopy *c = canopy;
     kept_pass(kept, c->cell, cells_of(c) * sizeof *c->cell);
+    kept_pass(kept, c->sky, cells_of(c) * sizeof *c->sky);
+    kept_pass(kept, &c->mean, sizeof c->mean);
     kept_floats(kept, c->gap, gap_steps + 2);
+    kept_floats(kept, c->low_gap, gap_steps + 2);
+    kept_doubles(kept, c->clumping, plant_shade_ways);
+    kept_doubles(kept, c->above, plant_shade_heights);
+    kept_doubles(kept, c->below, plant_shade_heights);
+    kept_doubles(kept, &c->own, 1);
     kept_doubles(kept, &c->open_up, 1);
     kept_doubles(kept, &c->open_down, 1);
     kept_doubles(kept, c->scattered, optical_channel_count);
@@ -129,8 +137,9 @@ Status canopy_create_bare(Canopy **out, const Woods *woods)
     c->nx = woods->nx * per_square, c->ny = woods->ny * per_square;
     c->x0_m = woods->origin_enu[0], c->y0_m = woods->origin_enu[1];
     c->cell = calloc(cells_of(c) + 1, sizeof *c->cell);
-    if (!c->cell) {
-        free(c);
+    c->sky = calloc(cells_of(c) + 1, sizeof *c->sky);
+    if (!c->cell || !c->sky) {
+        canopy_destroy(c);
         return STATUS_NO_MEMORY;
     }
     *out = c;
@@ -140,9 +149,11 @@ Status canopy_create_bare(Canopy **out, const Woods *woods)
 static Status fill(Canopy *c, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
 {
     const CanopyGrid grid = {c->cell, c->nx, c->ny, c->x0_m, c->y0_m};
-    for (int k = 0; k < gap_steps + 2; k++) c->gap[k] = (float)canopy_gap(gap_most * k / gap_steps);
+    canopy_find_shade(c, woods, plants, leaves);
     average(c, woods, plants, materials, leaves);
-    return canopy_fill_grid(&grid, woods->origin_enu, woods->plant, woods->count, plants, leaves);
+    const Status status = canopy_fill_grid(&grid, woods->origin_enu, woods->plant, woods->count, plants, leaves);
+    if (status == STATUS_OK) canopy_find_sky(c, plants);
+    return status;
 }
 
 Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
@@ -175,37 +186,73 @@ void canopy_destroy(Canopy *canopy)
     if (!canopy) return;
     canopy_pages_destroy(canopy->pages);
     free(canopy->cell);
+    free(canopy->sky);
     free(canopy);
 }
 
-static double above_cell(const CanopyCell *cell, double height_m)
+/* Height in the crowns of a cell, from their base at 0 to their top at 1. */
+static inline double height_in(const CanopyCell *cell, double height_m)
 {
     const double top = cell->top * top_step_m, base = cell->base * top_step_m;
-    if (cell->leaf_area == 0 || height_m >= top) return 0;
-    return leaf_area_step * cell->leaf_area * (height_m <= base ? 1 : (top - height_m) / (top - base));
+    return height_m >= top ? 1 : height_m <= base ? 0 : (height_m - base) / (top - base);
+}
+
+/* Leaf area at random that hides as much of the sun as what is above a place and in all; that hides as much of the sky,
+ * past plants about it too; and of the ground below it. leaves: leaf area above it. towards: as CanopySky, over a sky
+ * without plants. */
+typedef struct Depth {
+    double sun, all, sky, all_sky, ground, leaves, towards[2];
+} Depth;
+
+static inline void add_cell(Depth *to, const Canopy *c, const CanopyCell *cell, double share, double height_m)
+{
+    if (cell->leaf_area == 0) return;
+    const double x = height_in(cell, height_m), leaves = share * leaf_area_step * cell->leaf_area;
+    const double hides = leaves * clumped_step * cell->clumped;
+    to->all += hides, to->sun += hides * canopy_share_at(c->above, x),
+        to->ground += hides * canopy_share_at(c->below, x);
+    to->leaves += leaves * (1 - x);
+}
+
+/* own: of the woods; NULL: the cell is of a page, or there is none. */
+static inline void add_sky(Depth *to, const Canopy *c, const CanopyCell *cell, const CanopySky *own, double share,
+                           double height_m)
+{
+    const bool   plants = cell && cell->leaf_area > 0;
+    const double here = plants ? leaf_area_step * cell->leaf_area * clumped_step * cell->clumped : 0;
+    const double area = own ? sky_area_step * own->area : here;
+    const double x = canopy_share_at(c->above, plants ? height_in(cell, height_m) : height_in(&c->mean, height_m));
+    to->all_sky += share * area, to->sky += share * area * x;
+    for (int k = 0; k < 2 && own; k++) to->towards[k] += share * x * sky_towards_step * own->towards[k];
 }
 
 /* Straight between the middles of cells. pages: their plants too. */
-static double leaf_area_above(const Canopy *c, double x_m, double y_m, double height_m, bool pages)
+static Depth depth_at(const Canopy *c, double x_m, double y_m, double height_m, bool pages)
 {
     const double x = (x_m - c->x0_m) / canopy_cell_m - 0.5, y = (y_m - c->y0_m) / canopy_cell_m - 0.5;
     const double i = floor(x), j = floor(y);
-    double       sum = 0;
-    if (!pages && !(i >= 0 && j >= 0 && i < c->nx - 1 && j < c->ny - 1)) return 0;
+    Depth        sum = {0};
+    if (!pages && !(i >= 0 && j >= 0 && i < c->nx - 1 && j < c->ny - 1)) return sum;
     for (int k = 0; k < 4; k++) {
         const double      share = (k & 1 ? x - i : 1 - (x - i)) * (k & 2 ? y - j : 1 - (y - j));
         const double      a = i + (k & 1), b = j + (k >> 1);
-        const CanopyCell *cell = NULL;
-        if (a >= 0 && b >= 0 && a < c->nx && b < c->ny) cell = &c->cell[(size_t)b * (size_t)c->nx + (size_t)a];
-        if (pages && (!cell || cell->leaf_area == 0)) cell = canopy_page_cell(c, a, b);
-        if (cell) sum += share * above_cell(cell, height_m);
+        const CanopyCell *cell = NULL, *far = NULL;
+        const CanopySky  *sky = NULL;
+        if (a >= 0 && b >= 0 && a < c->nx && b < c->ny) {
+            const size_t at = (size_t)b * (size_t)c->nx + (size_t)a;
+            cell = &c->cell[at], sky = &c->sky[at];
+        }
+        if (pages && (!cell || cell->leaf_area == 0)) far = canopy_page_cell(c, a, b);
+        if (far && far->leaf_area > 0) cell = far, sky = NULL;
+        if (cell) add_cell(&sum, c, cell, share, height_m);
+        add_sky(&sum, c, cell, sky, share, height_m);
     }
     return sum;
 }
 
 double canopy_leaf_area_above(const Canopy *c, double x_m, double y_m, double height_m)
 {
-    return leaf_area_above(c, x_m, y_m, height_m, false);
+    return depth_at(c, x_m, y_m, height_m, false).leaves;
 }
 
 void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
@@ -213,29 +260,64 @@ void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
     const double x = floor((x_m - c->x0_m) / canopy_cell_m), y = floor((y_m - c->y0_m) / canopy_cell_m);
     *out = (CanopyStand){.open = 1};
     if (!(x >= 0 && y >= 0 && x < c->nx && y < c->ny)) return;
-    const CanopyCell *cell = &c->cell[(size_t)y * (size_t)c->nx + (size_t)x];
+    const size_t      at = (size_t)y * (size_t)c->nx + (size_t)x;
+    const CanopyCell *cell = &c->cell[at];
+    const double      leaf_area = leaf_area_step * cell->leaf_area;
+    out->open = between_gaps(c->gap, 0.5 * sky_area_step * c->sky[at].area);
     if (cell->leaf_area == 0) return;
-    *out = (CanopyStand){leaf_area_step * cell->leaf_area, cell->base * top_step_m, cell->top * top_step_m,
-                         gap_at(c, 0.5 * leaf_area_step * cell->leaf_area)};
+    out->leaf_area = leaf_area, out->hides = leaf_area * clumped_step * cell->clumped;
+    out->base_m = cell->base * top_step_m, out->top_m = cell->top * top_step_m;
 }
 
 /* ---- hits ------------------------------------------------------------------------------------- */
 
+/* What other plants leave of the sky that a leaf sees past its own crown, which is open aside rather than upwards:
+ * between what they leave of the light on level ground and on walls; of the light on walls for all leaves, most of
+ * which lie deep. */
+static double past_others(const Canopy *c, double x)
+{
+    static const double level = 0.3; /* of tests/system/test_plants_within_deep.sh */
+    return level * between_gaps(c->gap, x) + (1 - level) * between_gaps(c->low_gap, x);
+}
+
+/* Of what is met on the way up first, leaves whose share x of all above a place is above them are as frequent as
+ * exp(-d (1 - x)), and get exp(-s x) of the sun, d and s the depths of sky and sun over the place: the mean. That of
+ * the sky: s = d. */
+static void see_leaves(CanopyPlace *p, double sun_depth)
+{
+    const double depth = -log(fmax(p->up, 1e-12)), off = depth - sun_depth;
+    p->seen_up = p->up, p->seen_sun = p->sun_here;
+    if (!(depth > 1e-3)) return;
+    p->seen_up = depth * p->up / (1 - p->up);
+    p->seen_sun = fabs(off) < 1e-2 ? depth * sqrt(p->up * p->sun_here) / (1 - p->up)
+                                   : depth * (p->sun_here - p->up) / ((1 - p->up) * off);
+}
+
 static bool place_at(CanopyPlace *out, const Canopy *c, const double p_m[2], double height_m, double sin_sun,
                      bool pages)
 {
-    const double all = leaf_area_above(c, p_m[0], p_m[1], 0, pages);
-    const double above = height_m > 0 ? leaf_area_above(c, p_m[0], p_m[1], height_m, pages) : all;
-    const double slant = 0.5 / fmax(sin_sun, 0.05);
-    if (!(all > 0)) {
-        *out = (CanopyPlace){1, 1, 1, 1, 1};
+    const Depth  depth = depth_at(c, p_m[0], p_m[1], height_m > 0 ? height_m : 0, pages);
+    const double slant = 0.5 * canopy_clumping(c, sin_sun) / fmax(sin_sun, 0.05);
+    if (!(depth.all_sky > 0) && !(depth.all > 0)) {
+        *out = (CanopyPlace){1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, .low = 1};
         return false;
     }
-    *out = (CanopyPlace){.up = gap_at(c, 0.5 * above),
-                         .down = gap_at(c, 0.5 * fmax(all - above, 0)),
-                         .up_from_ground = gap_at(c, 0.5 * all),
-                         .sun_here = exp(-slant * above),
-                         .sun_on_ground = exp(-slant * all)};
+    /* shares of other plants in what hides sky and sun */
+    const double sky = 1 - c->own / fmax(fmax(depth.all_sky, c->own), 1e-9),
+                 sun = 1 - c->own / fmax(fmax(depth.all, c->own), 1e-9);
+    *out = (CanopyPlace){.up = between_gaps(c->gap, 0.5 * depth.sky),
+                         .down = between_gaps(c->gap, 0.5 * depth.ground),
+                         .up_from_ground = between_gaps(c->gap, 0.5 * depth.all_sky),
+                         .sun_here = exp(-slant * depth.sun),
+                         .sun_on_ground = exp(-slant * depth.all),
+                         .past_up = past_others(c, 0.5 * sky * depth.sky),
+                         .past_low_up = between_gaps(c->low_gap, 0.5 * sky * depth.sky),
+                         .past_down = past_others(c, 0.5 * sun * depth.ground),
+                         .past_low_down = between_gaps(c->low_gap, 0.5 * sun * depth.ground),
+                         .past_sun = exp(-slant * sun * depth.sun),
+                         .low = between_gaps(c->low_gap, 0.5 * depth.sky),
+                         .towards = {depth.towards[0], depth.towards[1]}};
+    see_leaves(out, slant * depth.sun);
     return true;
 }
 
@@ -244,9 +326,29 @@ bool canopy_place(CanopyPlace *out, const Canopy *c, double x_m, double y_m, dou
     return place_at(out, c, (const double[2]){x_m, y_m}, height_m, sin_sun, false);
 }
 
+void canopy_place_past_plant(double *up, double *down, const CanopyPlace *p, const Canopy *c, double open_up,
+                             double open_down)
+{
+    *up = c->own > 0 ? open_up * p->past_up : fmin(p->up, open_up);
+    *down = c->own > 0 ? open_down * p->past_down : fmin(p->down, open_down);
+}
+
+/* A leaf gets what its own plant leaves it of what others do. Where nothing is known of single shadows, the less of its
+ * own plant's and of all. */
 void canopy_place_of_plant(CanopyPlace *p, const Canopy *c)
 {
-    p->up = fmin(c->open_up, p->up), p->down = fmin(c->open_down, p->down), p->sun_here = fmin(c->open_up, p->sun_here);
+    const bool known = c->own > 0;
+    p->up = known ? c->open_up * p->past_low_up : fmin(c->open_up, p->up);
+    p->down = known ? c->open_down * p->past_low_down : fmin(c->open_down, p->down);
+    p->sun_here = known ? c->open_up * p->past_sun : fmin(c->open_up, p->sun_here);
+}
+
+void canopy_place_of_ground(CanopyPlace *p, const Canopy *c)
+{
+    const double up = c->own > 0 ? p->past_low_up / fmax(p->up, 1e-9) : 1,
+                 sun = c->own > 0 ? p->past_sun / fmax(p->sun_here, 1e-9) : 1;
+    const double open = c->own > 0 ? c->open_up : 1;
+    p->up = open * fmin(p->seen_up * up, 1), p->sun_here = open * fmin(p->seen_sun * sun, 1);
 }
 
 /* half: of what a surface scatters. */
@@ -269,6 +371,17 @@ double canopy_exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlac
     return exitance(on_ground_w_m2, c, place, 0.5 * c->scattered[channel], sun_w_m2, sky_w_m2, sin_sun, ground_rho);
 }
 
+/* What a surface receives of an even sky, over what its tilt alone would leave it. From zenith to walls all around: the
+ * light on level ground by the cosine of the tilt, that on a wall by the rest, and that from the open side, of which a
+ * wall gets half and level ground none. Exact for an open sky, and for half of one. */
+static double sky_on(const CanopyPlace *p, const Hits *hits, int i)
+{
+    const double up = (double)hits->n_enu[2][i], open = 0.5 * (1 + up);
+    const double aside = (double)hits->n_enu[0][i] * p->towards[0] + (double)hits->n_enu[1][i] * p->towards[1];
+    if (!(open > 1e-3)) return p->up;
+    return clamp((up * p->up + 0.5 * (1 - up) * p->low + open * aside) / open, 0, 2);
+}
+
 bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape, const Daylight *light,
                   const float ground_rho[optical_channel_count], const Hits *hits, unsigned channels)
 {
@@ -278,7 +391,7 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
     for (int i = 0; i < hits->count; i++) {
         const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
         double       height_m = 0;
-        place[i] = (CanopyPlace){1, 1, 1, 1, 1};
+        place[i] = (CanopyPlace){1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, .low = 1};
         if (!(hits->range_m[i] < INFINITY)) continue;
         if (hits->kind[i] != hit_ground && landscape)
             height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
@@ -288,9 +401,16 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
     }
     if (!any) return false;
     for (int i = 0; i < hits->count; i++) {
-        const bool plant = hits->kind[i] == hit_plant;
-        out->up[i] = (float)(plant ? fmin(place[i].up, (double)hits->open_up[i]) : place[i].up);
-        out->down[i] = (float)(plant ? fmin(place[i].down, (double)hits->open_down[i]) : place[i].down);
+        CanopyPlace *p = &place[i];
+        if (hits->kind[i] != hit_plant) {
+            out->up[i] = (float)sky_on(p, hits, i), out->down[i] = (float)p->down;
+            canopy_place_of_ground(p, c);
+            continue;
+        }
+        double up, down;
+        canopy_place_past_plant(&up, &down, p, c, (double)hits->open_up[i], (double)hits->open_down[i]);
+        out->up[i] = (float)up, out->down[i] = (float)down;
+        if (c->own > 0) canopy_place_of_plant(p, c);
     }
     for (int k = 0; k < optical_channel_count; k++) {
         if (!(channels >> k & 1)) continue;
