@@ -61,13 +61,13 @@ static Status grow_plants(World *world, CacheKey *key, const ForestConfig *confi
 {
     static const uint64_t seed = 1995; /* the prototypes are the same in every world */
     const int64_t         embree = tracer_embree(world->tracer);
-    const uint8_t         leaves = config->leaves; /* bare trees let more light through to their bark */
+    const uint8_t         light[2] = {config->leaves, config->fine}; /* bare trees let more through to their bark */
     const Status          status = plants_create(&world->plants, seed, pool);
     if (status != STATUS_OK) return status;
     *key = cache_key("light of prototypes");
     cache_key_add(key, &seed, sizeof seed); /* by which they grow, in this program */
     cache_key_add(key, &embree, sizeof embree);
-    cache_key_add(key, &leaves, sizeof leaves);
+    cache_key_add(key, light, sizeof light);
     if (isa) cache_key_add(key, isa, strlen(isa));
     return STATUS_OK;
 }
@@ -84,6 +84,7 @@ static Status light_plants(World *world, CacheKey *key, Pool *pool)
     }
     const Status status = forest_openness(world->plants, world->forest, pool);
     if (status != STATUS_OK) return status;
+    forest_shade(world->plants, world->forest, pool);
     count = world->cache ? plants_light_to_octets(NULL, world->plants) : 0;
     if (count == 0 || !(octets = malloc(count))) return STATUS_OK;
     plants_light_to_octets(octets, world->plants);
@@ -198,18 +199,22 @@ static void stand_there(ShadowStand *out, const void *canopy, double x_m, double
 {
     CanopyStand c;
     canopy_stand(&c, canopy, x_m, y_m);
-    *out = (ShadowStand){(float)c.leaf_area, (float)c.base_m, (float)c.top_m, (float)c.open};
+    *out = (ShadowStand){(float)c.hides, (float)c.base_m, (float)c.top_m, (float)c.open};
 }
 
 static Status cast_shadows(World *world, double shadow_m, Pool *pool)
 {
     float     d_enu[3][heat_day_slots];
+    float     clumped[heat_day_slots] = {0};
     const int slots = heat_slots(d_enu, world->heat);
     _Static_assert((int)shadow_most_slots >= (int)heat_day_slots, "room for a day");
+    for (int k = 0; k < slots && world->canopy; k++)
+        clumped[k] = (float)canopy_clumping(world->canopy, (double)d_enu[2][k]);
     const ShadowOf of = {.elevation = &world->landscape->elevation,
                          .cell_m = shadow_m,
                          .slots = slots,
                          .d_enu = d_enu,
+                         .clumped = world->canopy ? clumped : NULL,
                          .plants = world->canopy ? stand_there : NULL,
                          .user = world->canopy,
                          .cache = world->cache};

@@ -174,8 +174,8 @@ double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uin
 
 typedef struct ShadowMap ShadowMap;
 
-/* Plants of a place: leaf area index between base and top over the ground, 0: none; and the share of an even sky that
- * reaches the ground. */
+/* Plants of a place: leaf area index between base and top over the ground, 0: none, of leaves at random that hide as
+ * much from overhead; and the share of an even sky that reaches the ground. */
 typedef struct ShadowStand {
     float leaf_area, base_m, top_m, open;
 } ShadowStand;
@@ -192,7 +192,8 @@ typedef struct ShadowOf {
     float (*d_enu)[shadow_most_slots]; /* [3] */
     ShadowPlants *plants;
     const void   *user;
-    Cache        *cache; /* where the map is kept; NULL: nowhere */
+    Cache        *cache;   /* where the map is kept; NULL: nowhere */
+    const float  *clumped; /* [slots]: factor on the leaf area for light of that slot; NULL: 1 */
 } ShadowOf;
 Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool);
 void   heat_shadow_destroy(ShadowMap *map); /* accepts NULL */

@@ -50,6 +50,7 @@ typedef struct Job {
     ShadowPlants *plants;
     const void   *user;
     float (*d_enu)[shadow_most_slots];
+    const float     *clumped;
     const Elevation *elevation;
     bool             failed[shadow_most_slots];
 } Job;
@@ -79,12 +80,12 @@ static double area_above(const ShadowStand *s, double height_m)
 }
 
 /* Direct light that plants let through on its way to the ground of a cell: a cell's width at a time. */
-static double light_through(const ShadowMap *m, int i, int j, double x, double y, double up)
+static double light_through(const ShadowMap *m, int i, int j, double x, double y, double up, double clumped)
 {
     const double level = hypot(x, y), ground_m = (double)m->z_m[(size_t)j * (size_t)m->nx + (size_t)i];
     const double most = (double)m->most_m / up, stride_m = level > 1e-3 ? fmin(m->cell_m / level, most) : most;
     double       depth = 0;
-    for (double way_m = 0; way_m < most && depth < 8; way_m += stride_m) {
+    for (double way_m = 0; way_m < most && clumped * depth < 8; way_m += stride_m) {
         const double ci = i + (way_m + 0.5 * stride_m) * x / m->cell_m,
                      cj = j + (way_m + 0.5 * stride_m) * y / m->cell_m;
         if (!(ci >= 0 && cj >= 0 && ci <= m->nx - 1 && cj <= m->ny - 1)) break;
@@ -94,7 +95,7 @@ static double light_through(const ShadowMap *m, int i, int j, double x, double y
         const double low_m = ground_m + way_m * up - (double)m->z_m[there];
         depth += 0.5 * (area_above(stand, low_m) - area_above(stand, low_m + stride_m * up)) / up;
     }
-    return exp(-depth);
+    return exp(-clumped * depth);
 }
 
 /* Height of a shadow's edge at cell k of a row, from the edges of the row before, less what it drops. */
@@ -111,6 +112,7 @@ static void fill_slot(void *user, int worker, int slot)
     Job         *job = user;
     ShadowMap   *m = job->map;
     const double x = (double)job->d_enu[0][slot], y = (double)job->d_enu[1][slot], up = (double)job->d_enu[2][slot];
+    const double clumped = job->clumped ? (double)job->clumped[slot] : 1;
     const Sweep  s = sweep_of(m, x, y, up);
     const int    wide = s.along_x ? m->ny : m->nx;
     double      *edge = malloc(4 * (size_t)wide * sizeof *edge); /* of the ground and of plants, two rows of each */
@@ -130,7 +132,7 @@ static void fill_slot(void *user, int worker, int slot)
             if (m->most_m > 0) {
                 const double crowns_m = larger(edge_at(plants[0], &s, k, wide), z_m + (double)top[k]);
                 if (lit > 0 && crowns_m > z_m - s.drop_m)
-                    lit *= light_through(m, s.along_x ? row : k, s.along_x ? k : row, x, y, up);
+                    lit *= light_through(m, s.along_x ? row : k, s.along_x ? k : row, x, y, up, clumped);
                 plants[1][k] = crowns_m;
             }
             m->shadow[cell_at(m, &s, row, k) * (size_t)m->stride + (size_t)slot] = (uint8_t)lround(255 * (1 - lit));
@@ -173,6 +175,7 @@ static CacheKey key_of(const ShadowMap *m, const ShadowOf *of)
     cache_key_add(&key, whole, sizeof whole);
     cache_key_add(&key, &m->cell_m, sizeof m->cell_m);
     for (int k = 0; k < 3; k++) cache_key_add(&key, of->d_enu[k], (size_t)m->slots * sizeof **of->d_enu);
+    if (of->clumped) cache_key_add(&key, of->clumped, (size_t)m->slots * sizeof *of->clumped);
     cache_key_add(&key, m->z_m, cells * sizeof *m->z_m);
     _Static_assert(sizeof *m->stand == 4 * sizeof(float), "no padding");
     if (m->stand) cache_key_add(&key, m->stand, cells * sizeof *m->stand);
@@ -239,7 +242,7 @@ Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool)
     m->stand = of->plants ? malloc(cells * sizeof *m->stand) : NULL;
     m->open = malloc(cells);
     m->shadow = calloc(cells, (size_t)(m->stride > 0 ? m->stride : 1));
-    Job    job = {m, of->plants, of->user, of->d_enu, elevation, {false}};
+    Job    job = {m, of->plants, of->user, of->d_enu, of->clumped, elevation, {false}};
     Status status = m->z_m && (m->stand || !of->plants) && m->open && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = cast(m, &job, of, pool);
     free_heights(m);

@@ -18,11 +18,11 @@ double canopy_gap(double x)
     return sum / steps;
 }
 
-static double gap_at(const Canopy *c, double x)
+static double between_gaps(const float gap[gap_steps + 2], double x)
 {
     const double at = clamp(x / gap_most * gap_steps, 0, gap_steps - 1e-6);
     const int    i = (int)at;
-    return (double)c->gap[i] + (at - i) * ((double)c->gap[i + 1] - (double)c->gap[i]);
+    return (double)gap[i] + (at - i) * ((double)gap[i + 1] - (double)gap[i]);
 }
 
 /* ---- the woods' own light ---------------------------------------------------------------------- */
@@ -82,7 +82,8 @@ static void average(Canopy *c, const Woods *woods, const Plants *plants, const M
 
 /* ---- between runs ----------------------------------------------------------------------------- */
 
-_Static_assert(sizeof(CanopyCell) == 4 && sizeof(Plant) == 20, "no padding: the octets are the numbers");
+_Static_assert(sizeof(CanopyCell) == 4 && sizeof(CanopySky) == 3 && sizeof(Plant) == 20,
+               "no padding: the octets are the numbers");
 
 static size_t cells_of(const Canopy *c) { return (size_t)c->nx * (size_t)c->ny; }
 
@@ -90,7 +91,14 @@ void canopy_kept_values(Kept *kept, void *canopy)
 {
     Canopy *c = canopy;
     kept_pass(kept, c->cell, cells_of(c) * sizeof *c->cell);
+    kept_pass(kept, c->sky, cells_of(c) * sizeof *c->sky);
+    kept_pass(kept, &c->mean, sizeof c->mean);
     kept_floats(kept, c->gap, gap_steps + 2);
+    kept_floats(kept, c->low_gap, gap_steps + 2);
+    kept_doubles(kept, c->clumping, plant_shade_ways);
+    kept_doubles(kept, c->above, plant_shade_heights);
+    kept_doubles(kept, c->below, plant_shade_heights);
+    kept_doubles(kept, &c->own, 1);
     kept_doubles(kept, &c->open_up, 1);
     kept_doubles(kept, &c->open_down, 1);
     kept_doubles(kept, c->scattered, optical_channel_count);
@@ -129,8 +137,9 @@ Status canopy_create_bare(Canopy **out, const Woods *woods)
     c->nx = woods->nx * per_square, c->ny = woods->ny * per_square;
     c->x0_m = woods->origin_enu[0], c->y0_m = woods->origin_enu[1];
     c->cell = calloc(cells_of(c) + 1, sizeof *c->cell);
-    if (!c->cell) {
-        free(c);
+    c->sky = calloc(cells_of(c) + 1, sizeof *c->sky);
+    if (!c->cell || !c->sky) {
+        canopy_destroy(c);
         return STATUS_NO_MEMORY;
     }
     *out = c;
@@ -140,9 +149,11 @@ Status canopy_create_bare(Canopy **out, const Woods *woods)
 static Status fill(Canopy *c, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
 {
     const CanopyGrid grid = {c->cell, c->nx, c->ny, c->x0_m, c->y0_m};
-    for (int k = 0; k < gap_steps + 2; k++) c->gap[k] = (float)canopy_gap(gap_most * k / gap_steps);
+    canopy_find_shade(c, woods, plants, leaves);
     average(c, woods, plants, materials, leaves);
-    return canopy_fill_grid(&grid, woods->origin_enu, woods->plant, woods->count, plants, leaves);
+    const Status status = canopy_fill_grid(&grid, woods->origin_enu, woods->plant, woods->count, plants, leaves);
+    if (status == STATUS_OK) canopy_find_sky(c, plants);
+    return status;
 }
 
 Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
@@ -175,53 +186,73 @@ void canopy_destroy(Canopy *canopy)
     if (!canopy) return;
     canopy_pages_destroy(canopy->pages);
     free(canopy->cell);
+    free(canopy->sky);
     free(canopy);
 }
 
-static double above_cell(const CanopyCell *cell, double height_m)
+/* Height in the crowns of a cell, from their base at 0 to their top at 1. */
+static inline double height_in(const CanopyCell *cell, double height_m)
 {
     const double top = cell->top * top_step_m, base = cell->base * top_step_m;
-    if (cell->leaf_area == 0 || height_m >= top) return 0;
-    return leaf_area_step * cell->leaf_area * (height_m <= base ? 1 : (top - height_m) / (top - base));
+    return height_m >= top ? 1 : height_m <= base ? 0 : (height_m - base) / (top - base);
 }
 
-/* The cells with leaves about a place, and their shares of it: straight between the middles of cells. */
-typedef struct CellsAbout {
-    int               count;
-    const CanopyCell *cell[4];
-    double            share[4];
-} CellsAbout;
+/* Leaf area at random that hides as much of the sun as what is above a place and in all; that hides as much of the sky,
+ * past plants about it too; and of the ground below it. leaves: leaf area above it. towards: as CanopySky, over a sky
+ * without plants. */
+typedef struct Depth {
+    double sun, all, sky, all_sky, ground, leaves, towards[2];
+} Depth;
 
-/* pages: their plants too. */
-static void cells_about(CellsAbout *out, const Canopy *c, double x_m, double y_m, bool pages)
+static inline void add_cell(Depth *to, const Canopy *c, const CanopyCell *cell, double share, double height_m)
+{
+    if (cell->leaf_area == 0) return;
+    const double x = height_in(cell, height_m), leaves = share * leaf_area_step * cell->leaf_area;
+    const double hides = leaves * clumped_step * cell->clumped;
+    to->all += hides, to->sun += hides * canopy_share_at(c->above, x),
+        to->ground += hides * canopy_share_at(c->below, x);
+    to->leaves += leaves * (1 - x);
+}
+
+/* own: of the woods; NULL: the cell is of a page, or there is none. */
+static inline void add_sky(Depth *to, const Canopy *c, const CanopyCell *cell, const CanopySky *own, double share,
+                           double height_m)
+{
+    const bool   plants = cell && cell->leaf_area > 0;
+    const double here = plants ? leaf_area_step * cell->leaf_area * clumped_step * cell->clumped : 0;
+    const double area = own ? sky_area_step * own->area : here;
+    const double x = canopy_share_at(c->above, plants ? height_in(cell, height_m) : height_in(&c->mean, height_m));
+    to->all_sky += share * area, to->sky += share * area * x;
+    for (int k = 0; k < 2 && own; k++) to->towards[k] += share * x * sky_towards_step * own->towards[k];
+}
+
+/* Straight between the middles of cells. pages: their plants too. */
+static Depth depth_at(const Canopy *c, double x_m, double y_m, double height_m, bool pages)
 {
     const double x = (x_m - c->x0_m) / canopy_cell_m - 0.5, y = (y_m - c->y0_m) / canopy_cell_m - 0.5;
     const double i = floor(x), j = floor(y);
-    out->count = 0;
-    if (!pages && !(i >= 0 && j >= 0 && i < c->nx - 1 && j < c->ny - 1)) return;
+    Depth        sum = {0};
+    if (!pages && !(i >= 0 && j >= 0 && i < c->nx - 1 && j < c->ny - 1)) return sum;
     for (int k = 0; k < 4; k++) {
+        const double      share = (k & 1 ? x - i : 1 - (x - i)) * (k & 2 ? y - j : 1 - (y - j));
         const double      a = i + (k & 1), b = j + (k >> 1);
-        const CanopyCell *cell = NULL;
-        if (a >= 0 && b >= 0 && a < c->nx && b < c->ny) cell = &c->cell[(size_t)b * (size_t)c->nx + (size_t)a];
-        if (pages && (!cell || cell->leaf_area == 0)) cell = canopy_page_cell(c, a, b);
-        if (!cell || cell->leaf_area == 0) continue;
-        out->share[out->count] = (k & 1 ? x - i : 1 - (x - i)) * (k & 2 ? y - j : 1 - (y - j));
-        out->cell[out->count++] = cell;
+        const CanopyCell *cell = NULL, *far = NULL;
+        const CanopySky  *sky = NULL;
+        if (a >= 0 && b >= 0 && a < c->nx && b < c->ny) {
+            const size_t at = (size_t)b * (size_t)c->nx + (size_t)a;
+            cell = &c->cell[at], sky = &c->sky[at];
+        }
+        if (pages && (!cell || cell->leaf_area == 0)) far = canopy_page_cell(c, a, b);
+        if (far && far->leaf_area > 0) cell = far, sky = NULL;
+        if (cell) add_cell(&sum, c, cell, share, height_m);
+        add_sky(&sum, c, cell, sky, share, height_m);
     }
-}
-
-static double leaf_area_of(const CellsAbout *about, double height_m)
-{
-    double sum = 0;
-    for (int k = 0; k < about->count; k++) sum += about->share[k] * above_cell(about->cell[k], height_m);
     return sum;
 }
 
 double canopy_leaf_area_above(const Canopy *c, double x_m, double y_m, double height_m)
 {
-    CellsAbout about;
-    cells_about(&about, c, x_m, y_m, false);
-    return leaf_area_of(&about, height_m);
+    return depth_at(c, x_m, y_m, height_m, false).leaves;
 }
 
 void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
@@ -229,64 +260,107 @@ void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
     const double x = floor((x_m - c->x0_m) / canopy_cell_m), y = floor((y_m - c->y0_m) / canopy_cell_m);
     *out = (CanopyStand){.open = 1};
     if (!(x >= 0 && y >= 0 && x < c->nx && y < c->ny)) return;
-    const CanopyCell *cell = &c->cell[(size_t)y * (size_t)c->nx + (size_t)x];
+    const size_t      at = (size_t)y * (size_t)c->nx + (size_t)x;
+    const CanopyCell *cell = &c->cell[at];
+    const double      leaf_area = leaf_area_step * cell->leaf_area;
+    out->open = between_gaps(c->gap, 0.5 * sky_area_step * c->sky[at].area);
     if (cell->leaf_area == 0) return;
-    *out = (CanopyStand){leaf_area_step * cell->leaf_area, cell->base * top_step_m, cell->top * top_step_m,
-                         gap_at(c, 0.5 * leaf_area_step * cell->leaf_area)};
+    out->leaf_area = leaf_area, out->hides = leaf_area * clumped_step * cell->clumped;
+    out->base_m = cell->base * top_step_m, out->top_m = cell->top * top_step_m;
 }
 
 /* ---- hits ------------------------------------------------------------------------------------- */
 
-/* As fmin and fmax for finite numbers; those compile to calls. */
-static inline double smaller(double a, double b) { return a < b ? a : b; }
-static inline double larger(double a, double b) { return a > b ? a : b; }
-
-static const CanopyPlace open_place = {1, 1, 1, 1, 1};
-
-/* What a leaf area lets through of a sun of this slant; exp(0) is 1, as above most crowns. */
-static double sun_through(double slant, double leaf_area) { return leaf_area > 0 ? exp(-slant * leaf_area) : 1; }
-
-/* The place of a leaf area of `all`, with so much of it above. */
-static void place_of(CanopyPlace *out, const Canopy *c, double all, double above, double sin_sun)
+/* What other plants leave of the sky that a leaf sees past its own crown, which is open aside rather than upwards:
+ * between what they leave of the light on level ground and on walls; of the light on walls for all leaves, most of
+ * which lie deep. */
+static double past_others(const Canopy *c, double x)
 {
-    const double slant = 0.5 / larger(sin_sun, 0.05);
-    out->up_from_ground = gap_at(c, 0.5 * all);
-    out->up = above == all ? out->up_from_ground : gap_at(c, 0.5 * above);
-    out->down = gap_at(c, 0.5 * larger(all - above, 0));
-    out->sun_on_ground = sun_through(slant, all);
-    out->sun_here = above == all ? out->sun_on_ground : sun_through(slant, above);
+    static const double level = 0.3; /* of tests/system/test_plants_within_deep.sh */
+    return level * between_gaps(c->gap, x) + (1 - level) * between_gaps(c->low_gap, x);
+}
+
+/* Of what is met on the way up first, leaves whose share x of all above a place is above them are as frequent as
+ * exp(-d (1 - x)), and get exp(-s x) of the sun, d and s the depths of sky and sun over the place: the mean. That of
+ * the sky: s = d. */
+static void see_leaves(CanopyPlace *p, double sun_depth)
+{
+    const double depth = -log(fmax(p->up, 1e-12)), off = depth - sun_depth;
+    p->seen_up = p->up, p->seen_sun = p->sun_here;
+    if (!(depth > 1e-3)) return;
+    p->seen_up = depth * p->up / (1 - p->up);
+    p->seen_sun = fabs(off) < 1e-2 ? depth * sqrt(p->up * p->sun_here) / (1 - p->up)
+                                   : depth * (p->sun_here - p->up) / ((1 - p->up) * off);
+}
+
+static bool place_at(CanopyPlace *out, const Canopy *c, const double p_m[2], double height_m, double sin_sun,
+                     bool pages)
+{
+    const Depth  depth = depth_at(c, p_m[0], p_m[1], height_m > 0 ? height_m : 0, pages);
+    const double slant = 0.5 * canopy_clumping(c, sin_sun) / fmax(sin_sun, 0.05);
+    if (!(depth.all_sky > 0) && !(depth.all > 0)) {
+        *out = (CanopyPlace){1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, .low = 1};
+        return false;
+    }
+    /* shares of other plants in what hides sky and sun */
+    const double sky = 1 - c->own / fmax(fmax(depth.all_sky, c->own), 1e-9),
+                 sun = 1 - c->own / fmax(fmax(depth.all, c->own), 1e-9);
+    *out = (CanopyPlace){.up = between_gaps(c->gap, 0.5 * depth.sky),
+                         .down = between_gaps(c->gap, 0.5 * depth.ground),
+                         .up_from_ground = between_gaps(c->gap, 0.5 * depth.all_sky),
+                         .sun_here = exp(-slant * depth.sun),
+                         .sun_on_ground = exp(-slant * depth.all),
+                         .past_up = past_others(c, 0.5 * sky * depth.sky),
+                         .past_low_up = between_gaps(c->low_gap, 0.5 * sky * depth.sky),
+                         .past_down = past_others(c, 0.5 * sun * depth.ground),
+                         .past_low_down = between_gaps(c->low_gap, 0.5 * sun * depth.ground),
+                         .past_sun = exp(-slant * sun * depth.sun),
+                         .low = between_gaps(c->low_gap, 0.5 * depth.sky),
+                         .towards = {depth.towards[0], depth.towards[1]}};
+    see_leaves(out, slant * depth.sun);
+    return true;
 }
 
 bool canopy_place(CanopyPlace *out, const Canopy *c, double x_m, double y_m, double height_m, double sin_sun)
 {
-    CellsAbout about;
-    cells_about(&about, c, x_m, y_m, false);
-    const double all = leaf_area_of(&about, 0);
-    *out = open_place;
-    if (!(all > 0)) return false;
-    place_of(out, c, all, height_m > 0 ? leaf_area_of(&about, height_m) : all, sin_sun);
-    return true;
+    return place_at(out, c, (const double[2]){x_m, y_m}, height_m, sin_sun, false);
 }
 
+void canopy_place_past_plant(double *up, double *down, const CanopyPlace *p, const Canopy *c, double open_up,
+                             double open_down)
+{
+    *up = c->own > 0 ? open_up * p->past_up : fmin(p->up, open_up);
+    *down = c->own > 0 ? open_down * p->past_down : fmin(p->down, open_down);
+}
+
+/* A leaf gets what its own plant leaves it of what others do. Where nothing is known of single shadows, the less of its
+ * own plant's and of all. */
 void canopy_place_of_plant(CanopyPlace *p, const Canopy *c)
 {
-    p->up = smaller(c->open_up, p->up), p->down = smaller(c->open_down, p->down);
-    p->sun_here = smaller(c->open_up, p->sun_here);
+    const bool known = c->own > 0;
+    p->up = known ? c->open_up * p->past_low_up : fmin(c->open_up, p->up);
+    p->down = known ? c->open_down * p->past_low_down : fmin(c->open_down, p->down);
+    p->sun_here = known ? c->open_up * p->past_sun : fmin(c->open_up, p->sun_here);
 }
 
-/* Light of a channel over a canopy; half: of what a surface of it scatters. */
-typedef struct Overhead {
-    double half, sun_w_m2, sky_w_m2, sin_sun, ground_rho;
-} Overhead;
-
-/* M of canopy.h. p: of a leaf or branch (canopy_place_of_plant); sun_here 0 where the sun is down. */
-static inline double exitance(double *on_ground_w_m2, const CanopyPlace *p, const Overhead *o)
+void canopy_place_of_ground(CanopyPlace *p, const Canopy *c)
 {
-    const double from_above = o->sun_w_m2 * o->sin_sun * p->sun_on_ground + o->sky_w_m2 * p->up_from_ground;
-    const double on_leaf = 0.5 * o->sun_w_m2 * p->sun_here;
-    const double from_below = p->down * o->ground_rho, shaded = 1 - p->up_from_ground;
-    const double lost = 1 - o->half * (2 - p->up - p->down + from_below * shaded);
-    const double leaves = o->half * (on_leaf + p->up * o->sky_w_m2 + from_below * from_above) / larger(lost, 1e-6);
+    const double up = c->own > 0 ? p->past_low_up / fmax(p->up, 1e-9) : 1,
+                 sun = c->own > 0 ? p->past_sun / fmax(p->sun_here, 1e-9) : 1;
+    const double open = c->own > 0 ? c->open_up : 1;
+    p->up = open * fmin(p->seen_up * up, 1), p->sun_here = open * fmin(p->seen_sun * sun, 1);
+}
+
+/* half: of what a surface scatters. */
+static inline double exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *p, double half,
+                              double sun_w_m2, double sky_w_m2, double sin_sun, double ground_rho)
+{
+    const double up = fmin(c->open_up, p->up), down = fmin(c->open_down, p->down);
+    const double from_above = sun_w_m2 * sin_sun * p->sun_on_ground + sky_w_m2 * p->up_from_ground;
+    const double on_leaf = 0.5 * sun_w_m2 * (sin_sun > 0 ? fmin(c->open_up, p->sun_here) : 0);
+    const double from_below = down * ground_rho, shaded = 1 - p->up_from_ground;
+    const double leaves = half * (on_leaf + up * sky_w_m2 + from_below * from_above) /
+                          fmax(1 - half * (2 - up - down + from_below * shaded), 1e-6);
     *on_ground_w_m2 = from_above + shaded * leaves;
     return leaves;
 }
@@ -294,40 +368,18 @@ static inline double exitance(double *on_ground_w_m2, const CanopyPlace *p, cons
 double canopy_exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *place, int channel, double sun_w_m2,
                        double sky_w_m2, double sin_sun, double ground_rho)
 {
-    const Overhead o = {0.5 * c->scattered[channel], sun_w_m2, sky_w_m2, sin_sun, ground_rho};
-    CanopyPlace    p = *place;
-    canopy_place_of_plant(&p, c);
-    if (!(sin_sun > 0)) p.sun_here = 0;
-    return exitance(on_ground_w_m2, &p, &o);
+    return exitance(on_ground_w_m2, c, place, 0.5 * c->scattered[channel], sun_w_m2, sky_w_m2, sin_sun, ground_rho);
 }
 
-/* Places of a block's hits, as of plants, in arrays. */
-typedef struct Places {
-    double up[hits_capacity], down[hits_capacity], up_from_ground[hits_capacity];
-    double sun_here[hits_capacity], sun_on_ground[hits_capacity];
-} Places;
-
-static void put_place(Places *to, int i, const CanopyPlace *place, const Canopy *c, double sin_sun)
+/* What a surface receives of an even sky, over what its tilt alone would leave it. From zenith to walls all around: the
+ * light on level ground by the cosine of the tilt, that on a wall by the rest, and that from the open side, of which a
+ * wall gets half and level ground none. Exact for an open sky, and for half of one. */
+static double sky_on(const CanopyPlace *p, const Hits *hits, int i)
 {
-    CanopyPlace p = *place;
-    canopy_place_of_plant(&p, c);
-    to->up[i] = p.up, to->down[i] = p.down, to->up_from_ground[i] = p.up_from_ground;
-    to->sun_here[i] = sin_sun > 0 ? p.sun_here : 0, to->sun_on_ground[i] = p.sun_on_ground;
-}
-
-static void light_of(float *restrict leaves_w_m2, float *restrict ground, const Places *places, int count,
-                     const Overhead *over)
-{
-    const Overhead o = *over;
-    const double   open_w_m2 = o.sun_w_m2 * o.sin_sun + o.sky_w_m2;
-    for (int i = 0; i < count; i++) {
-        const CanopyPlace p = {places->up[i], places->down[i], places->up_from_ground[i], places->sun_here[i],
-                               places->sun_on_ground[i]};
-        double            on_ground_w_m2;
-        leaves_w_m2[i] = (float)exitance(&on_ground_w_m2, &p, &o);
-        ground[i] = (float)(on_ground_w_m2 / open_w_m2);
-    }
-    for (int i = 0; i < count && !(open_w_m2 > 0); i++) ground[i] = 1;
+    const double up = (double)hits->n_enu[2][i], open = 0.5 * (1 + up);
+    const double aside = (double)hits->n_enu[0][i] * p->towards[0] + (double)hits->n_enu[1][i] * p->towards[1];
+    if (!(open > 1e-3)) return p->up;
+    return clamp((up * p->up + 0.5 * (1 - up) * p->low + open * aside) / open, 0, 2);
 }
 
 /* Asks for the posts about a place, of the finest level that has it: they lie far apart in memory. */
@@ -345,35 +397,45 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
 {
     const double sin_sun = fmax(light->sun_d_enu[2], 0), reach_m = canopy_pages_reach_m(c);
     bool         any = false;
-    Places       places;
+    CanopyPlace  place[hits_capacity];
     for (int i = 0; i < hits->count; i++) {
         const int next = i + 8;
         if (landscape && next < hits->count && hits->kind[next] == hit_plant)
             ask_for_height(&landscape->elevation, hits->p_enu[0][next], hits->p_enu[1][next]);
         const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
-        const bool   plant = hits->kind[i] == hit_plant;
-        CanopyPlace  place = open_place;
-        CellsAbout   about = {.count = 0};
-        if (hits->range_m[i] < INFINITY)
-            cells_about(&about, c, x_m, y_m, reach_m > 0 && (plant || hits->range_m[i] < reach_m));
-        const double all = leaf_area_of(&about, 0);
-        if (all > 0) {
-            double height_m = 0;
-            if (hits->kind[i] != hit_ground && landscape)
-                height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
-            const bool aloft = isfinite(height_m) && height_m > 0;
-            place_of(&place, c, all, aloft ? leaf_area_of(&about, height_m) : all, sin_sun);
-        }
-        any |= all > 0 || (plant && hits->range_m[i] < INFINITY);
-        out->up[i] = (float)(plant ? smaller(place.up, (double)hits->open_up[i]) : place.up);
-        out->down[i] = (float)(plant ? smaller(place.down, (double)hits->open_down[i]) : place.down);
-        put_place(&places, i, &place, c, sin_sun);
+        double       height_m = 0;
+        place[i] = (CanopyPlace){1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, .low = 1};
+        if (!(hits->range_m[i] < INFINITY)) continue;
+        if (hits->kind[i] != hit_ground && landscape)
+            height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
+        const bool pages = reach_m > 0 && (hits->kind[i] == hit_plant || hits->range_m[i] < reach_m);
+        any |= place_at(&place[i], c, (const double[2]){x_m, y_m}, isfinite(height_m) ? height_m : 0, sin_sun, pages) |
+               (hits->kind[i] == hit_plant);
     }
     if (!any) return false;
+    for (int i = 0; i < hits->count; i++) {
+        CanopyPlace *p = &place[i];
+        if (hits->kind[i] != hit_plant) {
+            out->up[i] = (float)sky_on(p, hits, i), out->down[i] = (float)p->down;
+            canopy_place_of_ground(p, c);
+            continue;
+        }
+        double up, down;
+        canopy_place_past_plant(&up, &down, p, c, (double)hits->open_up[i], (double)hits->open_down[i]);
+        out->up[i] = (float)up, out->down[i] = (float)down;
+        if (c->own > 0) canopy_place_of_plant(p, c);
+    }
     for (int k = 0; k < optical_channel_count; k++) {
-        const Overhead o = {0.5 * c->scattered[k], light->sun_w_m2[k], light->sky_w_m2[k], sin_sun,
-                            (double)ground_rho[k]};
-        if (channels >> k & 1) light_of(out->leaves_w_m2[k], out->ground[k], &places, hits->count, &o);
+        if (!(channels >> k & 1)) continue;
+        const double sun_w_m2 = light->sun_w_m2[k], sky_w_m2 = light->sky_w_m2[k], half = 0.5 * c->scattered[k];
+        const double open_w_m2 = sun_w_m2 * sin_sun + sky_w_m2;
+        for (int i = 0; i < hits->count; i++) {
+            double       from_above_and_leaves;
+            const double leaves = exitance(&from_above_and_leaves, c, &place[i], half, sun_w_m2, sky_w_m2, sin_sun,
+                                           (double)ground_rho[k]);
+            out->leaves_w_m2[k][i] = (float)leaves;
+            out->ground[k][i] = (float)(open_w_m2 > 0 ? from_above_and_leaves / open_w_m2 : 1);
+        }
     }
     return true;
 }

@@ -1,23 +1,24 @@
 /* render/light/canopy.h: the diffuse light at a place among plants, in closed form: what is left of sky and ground, and
  * what leaves and branches scatter.
  *
- * Sky and ground. The leaves of a stand are taken for level layers of every direction (G = 1/2): leaf area index L
- * above a place lets 2 E3(L / 2) of an even sky through (Monsi & Saeki 1953; Ross 1981), that below it the same of the
- * ground. L comes from a grid of cells over the woods, between crown base and top a share of it. A hit on a plant has
- * the less of this and of what its own plant leaves it (PlantQuad.open_up, open_down).
+ * Sky and ground. What plants hide of slanted light follows from the shadows of their prototypes (PlantShade), counted
+ * on a grid of cells, for plants that stand apart; and, for the sky, in the cells that light crosses on its way
+ * (canopy_shade.c; sources, equations and errors: etc/reference/terrain.md). Where no shadows are known: level layers
+ * of leaves of every direction (G = 1/2), of whose index L above a place 2 E3(L / 2) of an even sky are let through
+ * (Monsi & Saeki 1953; Ross 1981). A hit on a plant has that of other plants, and of what its own leaves it
+ * (PlantQuad.open_up, open_down).
  *
  * Leaves. From where neither is seen come leaves and branches, all of one exitance M. A surface of theirs returns w / 2
- * of what falls on both its sides: of direct sun, 1/2 E_sun exp(-L / (2 sin h)); of sky and ground, the shares u and d
- * that a leaf of the stand sees on average; and of M itself, 2 - u - d. So
- *     M = w/2 (E_leaf + u E_sky + d E_ground) / (1 - w/2 (2 - u - d)),
- * all scattering orders at once (recollision: Knyazikhin et al. 1998; Smolander & Stenberg 2005), and E_ground what the
- * ground returns of the sun and sky that leaves let through, and of M from where they do not. w: reflectance and
- * transmittance of leaves, reflectance of bark, by the areas of both, as far as light reaches them. Even light on
- * surfaces that absorb nothing stays even light.
+ * of what falls on both its sides: of direct sun, 1/2 E_sun of the share that reaches it; of sky and ground, the shares
+ * u and d that a leaf of the stand sees on average; and of M itself, 2 - u - d. So M = w/2 (E_leaf + u E_sky + d
+ * E_ground) / (1 - w/2 (2 - u - d)), all scattering orders at once (recollision: Knyazikhin et al. 1998; Smolander &
+ * Stenberg 2005), and E_ground what the ground returns of the sun and sky that leaves let through, and of M from where
+ * they do not. w: reflectance and transmittance of leaves, reflectance of bark, by the areas of both, as far as light
+ * reaches them. Even light on surfaces that absorb nothing stays even light.
  *
- * Error, beside a path tracer of all orders (tests/system/test_plants_judge.sh): the light of leaves in the near
- * infrared within 5 % for single trees and a closed stand; visible within 5 %. Thermal bands are unchanged: leaves
- * radiate as much as they hide. Low plants, and the side from which the scattered light comes, are left out. */
+ * Error, beside a path tracer of all orders: tests/system/test_plants_judge.sh, test_plants_within_deep.sh. Thermal
+ * bands are without it: leaves radiate as much as they hide. Low plants, and the side of the scattered light, are left
+ * out. */
 #ifndef RENDER_LIGHT_CANOPY_H
 #define RENDER_LIGHT_CANOPY_H
 
@@ -49,11 +50,15 @@ void canopy_key_add_plants(CacheKey *key, const Materials *materials);
 
 /* Leaf area index above a place, height_m above its ground. */
 double canopy_leaf_area_above(const Canopy *canopy, double x_m, double y_m, double height_m);
-/* Plants of the cell there: leaf area, where it is, and the share of an even sky that reaches the ground. */
+/* Plants of the cell there: leaf area, where it is, the share of an even sky that reaches the ground, and the area of
+ * leaves at random (G = 1/2) that hides as much from overhead. */
 typedef struct CanopyStand {
-    double leaf_area, base_m, top_m, open;
+    double leaf_area, base_m, top_m, open, hides;
 } CanopyStand;
 void canopy_stand(CanopyStand *out, const Canopy *canopy, double x_m, double y_m);
+/* Light of this sine of elevation sees clumped * hides of that area: exp(-clumped hides / (2 sine)) of it reaches the
+ * ground. */
+double canopy_clumping(const Canopy *canopy, double up);
 /* 2 E3(x), x >= 0: within 1e-4. */
 double canopy_gap(double x);
 
@@ -62,9 +67,19 @@ double canopy_gap(double x);
 typedef struct CanopyPlace {
     double up, down, up_from_ground;
     double sun_here, sun_on_ground;
+    double seen_up, seen_sun;            /* up and sun_here of the leaves that are seen from there upwards */
+    double past_up, past_down, past_sun; /* up, down and sun_here past other plants than the one that stands there */
+    double past_low_up, past_low_down;   /* those of the light on walls */
+    double low, towards[2]; /* share of the sky's light on walls all around; and how much more of it comes from east and
+                             * north than from west and south, over the light of an open sky on level ground */
 } CanopyPlace;
 bool canopy_place(CanopyPlace *out, const Canopy *canopy, double x_m, double y_m, double height_m, double sin_sun);
-/* The same for a leaf or branch there, which its own plant leaves no more than the mean of all. */
+/* The same for the ground or another surface there, which sees the leaves above it. */
+void canopy_place_of_ground(CanopyPlace *place, const Canopy *canopy);
+/* Shares of sky and ground that a leaf or branch there sees, to which its own plant leaves these. */
+void canopy_place_past_plant(double *up, double *down, const CanopyPlace *place, const Canopy *canopy, double open_up,
+                             double open_down);
+/* The same for a leaf or branch there, to which its own plant leaves the mean of all. */
 void canopy_place_of_plant(CanopyPlace *place, const Canopy *canopy);
 /* M there in an optical channel, W/m2, and what falls on its ground, W/m2. sun, facing it, and sky: W/m2. */
 double canopy_exitance(double *on_ground_w_m2, const Canopy *canopy, const CanopyPlace *place, int channel,

@@ -9,7 +9,10 @@
 
 typedef struct Sum {
     float area;      /* m2 of leaves */
-    float top, base; /* weighted by it */
+    float hides;     /* canopy_plant_area of them */
+    float spread;    /* weighted by it, inversely */
+    float shadow;    /* weighted by it */
+    float top, base; /* weighted by area */
 } Sum;
 
 /* A plant's leaves go to the cells under its crown, evenly. */
@@ -20,6 +23,7 @@ static void add_plant(Sum *sum, const CanopyGrid *c, const double origin_enu[3],
     const double      height_m = plant_height_m(plant), wide = plant->width / 128.0;
     const double      area = (double)shape->leaf_area * height_m * height_m * wide;
     const double      r = (double)shape->crown_radius * height_m * wide;
+    const PlantArea   shade = canopy_plant_area(plants, plant->kind, height_m, wide);
     const double      x = (double)plant->p_m[0] + origin_enu[0] - c->x0_m;
     const double      y = (double)plant->p_m[1] + origin_enu[1] - c->y0_m;
     if (!leaves && plant_is_deciduous((PlantKind)plant->kind)) return;
@@ -34,6 +38,9 @@ static void add_plant(Sum *sum, const CanopyGrid *c, const double origin_enu[3],
             const double share = r > 0 ? fmax(across, 0) * fmax(along, 0) / (4 * r * r) : 1;
             Sum         *to = &sum[(size_t)j * (size_t)c->nx + (size_t)i];
             to->area += (float)(share * area);
+            to->hides += (float)(share * shade.hides);
+            to->spread += (float)(share * shade.hides / shade.spread);
+            to->shadow += (float)(share * shade.hides * shade.shadow);
             to->top += (float)(share * area * height_m);
             to->base += (float)(share * area * height_m * (double)shape->crown_low);
         }
@@ -49,8 +56,13 @@ Status canopy_fill_grid(const CanopyGrid *grid, const double origin_enu[3], cons
     for (size_t n = 0; n < cells; n++) {
         CanopyCell *cell = &grid->cell[n];
         if (!(sum[n].area > 0)) continue;
+        const double index = (double)sum[n].hides / (canopy_cell_m * canopy_cell_m);
+        const double clumped = canopy_apart(index, (double)sum[n].hides / (double)sum[n].spread,
+                                            (double)sum[n].shadow / (double)sum[n].hides) *
+                               (canopy_cell_m * canopy_cell_m) / (double)sum[n].area;
         cell->leaf_area =
             (uint8_t)fmin(rint((double)sum[n].area / (canopy_cell_m * canopy_cell_m) / leaf_area_step), 255);
+        cell->clumped = (uint8_t)clamp(rint(clumped / clumped_step), 1, 255);
         cell->top = (uint8_t)fmin(rint((double)(sum[n].top / sum[n].area) / top_step_m), 255);
         cell->base = (uint8_t)fmin(rint((double)(sum[n].base / sum[n].area) / top_step_m), 255);
     }

@@ -139,10 +139,11 @@ static double between(double low, double high, double share) { return low + shar
 
 static void place_between(CanopyPlace *out, const CanopyPlace *p, double share)
 {
-    *out = (CanopyPlace){between(p[0].up, p[1].up, share), between(p[0].down, p[1].down, share),
-                         between(p[0].up_from_ground, p[1].up_from_ground, share),
-                         between(p[0].sun_here, p[1].sun_here, share),
-                         between(p[0].sun_on_ground, p[1].sun_on_ground, share)};
+    *out = (CanopyPlace){.up = between(p[0].up, p[1].up, share),
+                         .down = between(p[0].down, p[1].down, share),
+                         .up_from_ground = between(p[0].up_from_ground, p[1].up_from_ground, share),
+                         .sun_here = between(p[0].sun_here, p[1].sun_here, share),
+                         .sun_on_ground = between(p[0].sun_on_ground, p[1].sun_on_ground, share)};
 }
 
 /* The mean of normals that lean towards the eye. */

@@ -106,7 +106,8 @@ static void add_plant(StandView *v, const WoodStand *stand, const Met *m, const 
     StandOrgan *o = m->organ == PLANT_LEAF ? &v->leaf : &v->bark;
     CanopyPlace place;
     canopy_place(&place, stand->canopy, m->p[0], m->p[1], fmax(m->p[2], 0), 1);
-    const double up = fmin(place.up, (double)s->open_up), down = fmin(place.down, (double)s->open_down);
+    double up, down;
+    canopy_place_past_plant(&up, &down, &place, stand->canopy, (double)s->open_up, (double)s->open_down);
     const double faces = 0.5 * (1 + m->n[2]), sees_leaves = 2 - up - down;
     v->sees_leaves += sees_leaves;
     for (int k = 0; k < stand_suns; k++) {
@@ -125,13 +126,17 @@ static void add_ground(StandView *v, const WoodStand *stand, const Met *m)
 {
     CanopyPlace place;
     CanopyStand there;
+    double      open = 1;
     canopy_stand(&there, stand->canopy, m->p[0], m->p[1]);
     for (int k = 0; k < stand_suns; k++) {
         canopy_place(&place, stand->canopy, m->p[0], m->p[1], 0, sin(stand_sun(k)));
+        open = place.up;
+        canopy_place_of_ground(&place, stand->canopy);
         add_place(&v->on_ground[k], &place, 1);
-        v->ground_through[k] += exp(-0.5 * there.leaf_area / sin(stand_sun(k)));
+        const double up = sin(stand_sun(k));
+        v->ground_through[k] += exp(-0.5 * canopy_clumping(stand->canopy, up) * there.hides / up);
     }
-    v->ground += 1, v->ground_up += place.up, v->ground_open += there.open;
+    v->ground += 1, v->ground_up += open, v->ground_open += there.open;
 }
 
 static void add_lit(StandLit *lit, const Met *m, const double sun[3])

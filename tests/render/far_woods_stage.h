@@ -44,7 +44,7 @@ static Material material_of_any(double bright)
 
 static CanopyPlace place_of_any(void)
 {
-    return (CanopyPlace){draw(0.2, 0.9), draw(0.2, 0.9), draw(0.2, 0.9), draw(0.2, 0.9), draw(0.2, 0.9)};
+    return (CanopyPlace){draw(0.2, 0.9), draw(0.2, 0.9), draw(0.2, 0.9), draw(0.2, 0.9), draw(0.2, 0.9), .low = 1};
 }
 
 static StandOrgan organ_of_any(double share)

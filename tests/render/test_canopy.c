@@ -167,7 +167,7 @@ static void set_hits(float up, float down)
     for (int i = 0; i < 4; i++) {
         hits.kind[i] = kind[i], hits.range_m[i] = i == 3 ? INFINITY : 100;
         hits.p_enu[0][i] = i == 1 ? 900 : 3, hits.p_enu[1][i] = 5;
-        hits.open_up[i] = up, hits.open_down[i] = down;
+        hits.open_up[i] = up, hits.open_down[i] = down, hits.n_enu[2][i] = 1;
     }
 }
 

@@ -241,7 +241,7 @@ static void means_of_the_woods(void **state)
     woods.by_kind[PLANT_PINE] = 3, woods.by_kind[PLANT_BIRCH] = 5;
     for (int leaves = 0; leaves < 2; leaves++) {
         Canopy      *c = create(leaves);
-        CanopyPlace  at = {1, 1, 1, 1, 1};
+        CanopyPlace  at = {1, 1, 1, 1, 1, .low = 1};
         double       on_ground;
         const double up = leaves ? mean_up : (3 * 0.16 + 5 * 0.2 * 0.2) / 1.9,
                      down = leaves ? mean_down : (3 * 0.08 + 5 * 0.2 * 0.6) / 1.9;
@@ -250,13 +250,13 @@ static void means_of_the_woods(void **state)
         CHECK_NEAR(at.down, down, 1e-6);
         CHECK_NEAR(at.sun_here, up, 1e-6);
         CHECK(at.up_from_ground == 1 && at.sun_on_ground == 1);
-        at = (CanopyPlace){0.05, 0.04, 0.03, 0.02, 0.01};
+        at = (CanopyPlace){0.05, 0.04, 0.03, 0.02, 0.01, .low = 1};
         canopy_place_of_plant(&at, c);
         CHECK(at.up == 0.05 && at.down == 0.04 && at.sun_here == 0.02);
         /* under an even sky of 100 alone, of which leaves see 0.2: M = w/2 x 20 / (1 - w/2 x 1.8) */
         for (int k = 0; k < optical_channel_count; k++) {
             const double half = 0.5 * (leaves ? scattered(k) : (3 * (0.16 + 0.002 * k) + 5 * 0.2 * 0.1) / 1.9);
-            at = (CanopyPlace){0.2, 0, 0.3, 1, 1};
+            at = (CanopyPlace){0.2, 0, 0.3, 1, 1, .low = 1};
             CHECK_NEAR(canopy_exitance(&on_ground, c, &at, k, 0, 100, 0.5, 0), half * 20 / (1 - 1.8 * half), 1e-5);
             CHECK_NEAR(on_ground, 30 + 0.7 * half * 20 / (1 - 1.8 * half), 1e-5);
         }
@@ -264,7 +264,7 @@ static void means_of_the_woods(void **state)
     }
     woods.by_kind[PLANT_PINE] = woods.by_kind[PLANT_BIRCH] = 0;
     Canopy     *none = create(true);
-    CanopyPlace at = {1, 1, 1, 1, 1};
+    CanopyPlace at = {1, 1, 1, 1, 1, .low = 1};
     canopy_place_of_plant(&at, none);
     CHECK(at.up == 0 && at.down == 0);
     canopy_destroy(none);
@@ -272,7 +272,7 @@ static void means_of_the_woods(void **state)
     woods.by_kind[PLANT_PINE] = 1;
     Canopy *white = create(true);
     double  on_ground;
-    at = (CanopyPlace){0.2, 0.2, 1, 1, 1};
+    at = (CanopyPlace){0.2, 0.2, 1, 1, 1, .low = 1};
     CHECK_NEAR(canopy_exitance(&on_ground, white, &at, 0, 0, 100, 0.5, 0),
                0.5 * (0.2 / 0.3 * 1.3 + 0.1 / 0.3 * 0.2) * 20 / (1 - 1.6 * 0.5 * (0.2 / 0.3 * 1.3 + 0.1 / 0.3 * 0.2)),
                1e-3);
@@ -297,6 +297,19 @@ static double leaves_on_paper(double *on_ground, const CanopyPlace *p, double w,
 
 /* Ground at 100 m, and on and over it: ground, a part 6.25 m up, a leaf there, ground in the open, sky, a leaf in the
  * open. */
+/* Mean light on leaves that are seen from below one by one: of those with a share x of all above them, exp(-s x) of the
+ * light arrives, and exp(-d (1 - x)) of them are seen. */
+static double seen_on_paper(double s, double d)
+{
+    enum { steps = 20000 };
+    double sum = 0, weights = 0;
+    for (int k = 0; k < steps; k++) {
+        const double x = (k + 0.5) / steps, weight = exp(-d * (1 - x));
+        sum += weight * exp(-s * x), weights += weight;
+    }
+    return sum / weights;
+}
+
 static void light_at_hits(void **state)
 {
     (void)state;
@@ -321,7 +334,7 @@ static void light_at_hits(void **state)
         hits.kind[i] = kind[i], hits.range_m[i] = kind[i] == hit_sky ? INFINITY : 50;
         hits.p_enu[0][i] = i == 3 || i == 5 ? x_of(12) : x_of(7), hits.p_enu[1][i] = y_of(2),
         hits.p_enu[2][i] = 100 + up[i];
-        hits.open_up[i] = 0.1f, hits.open_down[i] = 0.4f;
+        hits.open_up[i] = 0.1f, hits.open_down[i] = 0.4f, hits.n_enu[2][i] = 1;
     }
     for (int night = 0; night < 2; night++) {
         const double sine = night ? -0.2 : 0.5, above = night ? 0 : 0.5;
@@ -337,17 +350,20 @@ static void light_at_hits(void **state)
             /* in the crown's middle an index of 2 above and of 2 below; on the ground all 4; in the open none */
             const bool        among = i == 1 || i == 2, open = i > 2;
             const double      slant = 0.5 / fmax(above, 0.05);
-            const CanopyPlace at = {open    ? 1
-                                    : among ? 0.2193840
-                                            : 0.0602669,
-                                    among ? 0.2193840 : 1, open ? 1 : 0.0602669,
-                                    open ? 1 : exp(-slant * (among ? 2 : 4)), open ? 1 : exp(-slant * 4)};
+            const CanopyPlace at = {
+                open ? 1 : among ? 0.2193840 : 0.0602669, among ? 0.2193840 : 1,      open ? 1 : 0.0602669,
+                open ? 1 : exp(-slant * (among ? 2 : 4)), open ? 1 : exp(-slant * 4), .low = 1};
             CHECK_NEAR(light.up[i], kind[i] == hit_plant ? fmin(at.up, 0.1) : at.up, 1e-6);
             CHECK_NEAR(light.down[i], kind[i] == hit_plant ? fmin(at.down, 0.4) : at.down, 1e-6);
+            CanopyPlace seen = at; /* leaves that are seen: from the ground and what stands there, those above it */
+            if (kind[i] != hit_plant && !open) {
+                seen.up = seen_on_paper(-log(at.up), -log(at.up));
+                seen.sun_here = seen_on_paper(-log(at.sun_here), -log(at.up));
+            }
             for (int k = 0; k < optical_channel_count; k++) {
                 double       on_ground;
                 const double sun = day.sun_w_m2[k], sky = day.sky_w_m2[k];
-                const double m = leaves_on_paper(&on_ground, &at, scattered(k), sun, sky, above, 0.1 * (k + 1));
+                const double m = leaves_on_paper(&on_ground, &seen, scattered(k), sun, sky, above, 0.1 * (k + 1));
                 if (k == 2) continue;
                 CHECK_NEAR(light.leaves_w_m2[k][i], m, 1e-4);
                 CHECK_NEAR(light.ground[k][i], sun * above + sky > 0 ? on_ground / (sun * above + sky) : 1, 1e-5);

@@ -8,10 +8,12 @@ static double mean(double low, double high, double share) { return (1 - share) *
 
 static CanopyPlace mean_place(const CanopyPlace *p, double share)
 {
-    return (CanopyPlace){mean(p[0].up, p[1].up, share), mean(p[0].down, p[1].down, share),
+    return (CanopyPlace){mean(p[0].up, p[1].up, share),
+                         mean(p[0].down, p[1].down, share),
                          mean(p[0].up_from_ground, p[1].up_from_ground, share),
                          mean(p[0].sun_here, p[1].sun_here, share),
-                         mean(p[0].sun_on_ground, p[1].sun_on_ground, share)};
+                         mean(p[0].sun_on_ground, p[1].sun_on_ground, share),
+                         .low = 1};
 }
 
 /* M of render/light/canopy.h, and what falls on the ground below. */

@@ -171,9 +171,11 @@ static void ground_under_an_even_layer(void **state)
             const double       within = 0.03 * index / sine;
             const CanopyPlace *p = &of->on_ground[k];
             CHECK_NEAR(of->ground_through[k] / through, 1, within);
-            CHECK_NEAR(p->sun_here / through, 1, k == 0 ? 0.6 : within); /* a sine no less than 0.05 */
-            CHECK_NEAR(p->sun_on_ground / p->sun_here, 1, 1e-12);
-            CHECK_NEAR(p->up, gap, 0.03 * gap);
+            CHECK_NEAR(p->sun_on_ground / through, 1, k == 0 ? 0.6 : within);
+            /* sky and sun of the leaves that it sees: the mean of exp(-s x) weighted by exp(-d (1 - x)) */
+            const double d = -log(gap), s = 0.5 * index / sine;
+            CHECK_NEAR(p->sun_here / (d * (through - gap) / ((1 - gap) * (d - s))), 1, 0.05);
+            CHECK_NEAR(p->up, d * gap / (1 - gap), 0.03);
             CHECK_NEAR(p->up_from_ground, gap, 0.03 * gap);
             CHECK_NEAR(p->down, 1, 1e-6);
         }
@@ -450,10 +452,11 @@ static void woods_of_plates(void **state)
     void  *made[4];
     size_t octets[4];
     for (int k = 0; k < 4; k++) {
-        /* the canopy: 64 x 64 cells of 4 octets, 514 gaps, two opennesses, a number a channel; two rows without their
-         * names */
+        /* the canopy: 64 x 64 cells of 4 octets, and 3 of their sky; one cell more, two tables of 514 gaps, clumping
+         * and shares by height of 4, 9 and 9 numbers, its own shadow, two opennesses, a number a channel; two rows
+         * without their names */
         made[k] = octets_of(&octets[k], far, k);
-        CHECK(octets[k] == 64 * 64 * 4 + 514 * 4 + (2 + optical_channel_count) * 8 +
+        CHECK(octets[k] == 64 * 64 * 7 + 4 + 2 * 514 * 4 + (4 + 9 + 9) * 8 + (3 + optical_channel_count) * 8 +
                                2 * (sizeof(Material) - sizeof first_rows->name) + 4 + 8 +
                                stand_views * sizeof(StandView) + sizeof far->stand[0][0]->lit);
         refuses_other_rows(made[k], octets[k], far->stand[k / 2][k % 2]->bark_row);

@@ -39,7 +39,7 @@ static void length_of_a_shadow(void **state)
     ridge(40);
     for (int s = 0; s < 6; s++) slot(d, s, azimuth[s], high[s]);
     CHECK(pool_create(&pool, 2) == STATUS_OK);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 6, d, NULL, NULL, NULL}, pool) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 6, d, NULL, NULL, NULL, NULL}, pool) == STATUS_OK);
     for (int s = 0; s < 6; s++) {
         /* across the ridge */
         const double reach_m = 40 / tan(high[s] * rad_per_deg) * fabs(sin(azimuth[s] * rad_per_deg));
@@ -87,7 +87,7 @@ static void cells_behind_a_ridge(void **state)
             elevation_build_pyramids(&ground);
         }
         for (int s = 0; s < 12; s++) slot(d, s, c[s].azimuth, c[s].high);
-        CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 12, d, NULL, NULL, NULL}, NULL) == STATUS_OK);
+        CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 12, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_OK);
         for (int s = 0; s < 12; s++) {
             if (c[s].across_x != across_x) continue;
             const double x = (double)d[0][s], y = (double)d[1][s], tangent = (double)d[2][s] / hypot(x, y);
@@ -122,7 +122,7 @@ static void light_below_a_stand(void **state)
     slot(d, 0, 90, 50);
     slot(d, 1, 270, 30);
     slot(d, 2, 180, 90);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 3, d, even_stand, NULL, NULL}, NULL) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 3, d, even_stand, NULL, NULL, NULL}, NULL) == STATUS_OK);
     uint8_t shadow[shadow_most_slots];
     double  open;
     heat_shadow_at(shadow, &open, map, -300, 40);
@@ -135,6 +135,13 @@ static void light_below_a_stand(void **state)
     CHECK(shadow[1] > 100 && shadow[0] == 0);
     heat_shadow_at(shadow, &open, map, 20 / tan(30 * rad_per_deg) + 20, 0);
     CHECK(shadow[1] == 0);
+    heat_shadow_destroy(map);
+    /* leaves that are clumped for a low sun, more for one overhead: each slot by its own factor */
+    const float clumped[3] = {0.6f, 0.9f, 0.4f};
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 3, d, even_stand, NULL, NULL, clumped}, NULL) == STATUS_OK);
+    heat_shadow_at(shadow, &open, map, -300, 40);
+    for (int s = 0; s < 3; s++)
+        CHECK_NEAR(1 - shadow[s] / 255.0, exp(-0.5 * 3 * (double)clumped[s] / (double)d[2][s]), 0.0025);
     heat_shadow_destroy(map);
 }
 
@@ -158,7 +165,8 @@ static void light_through_one_column(void **state)
         int        shaded = 0;
         ridge(0);
         slot(d, 0, azimuth[!in_x][c % 2], 40);
-        CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 1, d, one_column, &in_x, NULL}, NULL) == STATUS_OK);
+        CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 1, d, one_column, &in_x, NULL, NULL}, NULL) ==
+              STATUS_OK);
         const double up = (double)d[2][0], level = hypot((double)d[0][0], (double)d[1][0]),
                      step = (double)d[in_x ? 0 : 1][0] / level, rise_m = 8 * up / level;
         for (int cell = -5; cell <= 5; cell++) {
@@ -182,11 +190,12 @@ static void large_terrain_has_larger_cells(void **state)
     ShadowMap *map;
     ridge(5);
     slot(d, 0, 90, 50);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 0.5, 1, d, NULL, NULL, NULL}, NULL) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 0.5, 1, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_OK);
     CHECK(heat_shadow_cell_m(map) == 1 && heat_shadow_bytes(map) < 9 * (size_t)shadow_most_cells);
     heat_shadow_destroy(map);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 0, 1, d, NULL, NULL, NULL}, NULL) == STATUS_BAD_VALUE);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&(Elevation){0}, 8, 1, d, NULL, NULL, NULL}, NULL) == STATUS_BAD_VALUE);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 0, 1, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_BAD_VALUE);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&(Elevation){0}, 8, 1, d, NULL, NULL, NULL, NULL}, NULL) ==
+          STATUS_BAD_VALUE);
     elevation_destroy(&ground);
 }
 

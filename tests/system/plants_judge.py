@@ -6,6 +6,8 @@ First order (max_depth 2, sun alone): the means of blocks of 8 x 8 pixels. All o
 leaves and over the ground. A line a band and a quantity, to be read by plants.sh:
     direct BLOCKS WORST_PERCENT: of blocks with a tenth of the mean light or more
     all WHAT BAND OURS THEIRS PERCENT ...
+Of the scene "within", whose rays begin in a stand, all orders alone:
+    within WHAT BAND OURS THEIRS PERCENT +- STANDARD_ERROR of RAYS ...
 """
 import sys
 
@@ -16,6 +18,8 @@ mi.set_variant("scalar_rgb")
 
 BANDS = ("red", "green", "near infrared")
 LEAF = 1
+WITHIN = 512 * 16  # rays of that scene
+HEIGHTS = (0, 5), (5, 8), (8, 11), (11, 20)  # m
 GROUND_HIT, PLANT_HIT = 1, 3
 
 
@@ -146,9 +150,10 @@ def meshes(text, quads, outlines):
 def scene_of(text, plants, sky):
     sun = text["sun"]
     scene = {"type": "scene", **plants,
-             "sun": {"type": "directional", "direction": [float(-x) for x in sun[:3]], "irradiance": {"type": "rgb", "value": [float(sun[3])] * 3}},
              "ground": {"type": "disk", "to_world": mi.ScalarTransform4f().scale([3000, 3000, 1]),
                         "bsdf": {"type": "twosided", "b": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [float(text["ground"][0])] * 3}}}}}
+    if sun[3] > 0:
+        scene["sun"] = {"type": "directional", "direction": [float(-x) for x in sun[:3]], "irradiance": {"type": "rgb", "value": [float(sun[3])] * 3}}
     if sky: scene["sky"] = {"type": "constant", "radiance": {"type": "rgb", "value": [float(text["sky"][0])] * 3}}
     return mi.load_dict(scene)
 
@@ -171,9 +176,33 @@ def blocks(values, width):
     return values.reshape(height // 32, 32, width // 32, 32).sum((1, 3))
 
 
+def errors(rays, full):
+    """Means of ours and theirs over rays, by band, with the standard error of their ratio, percent."""
+    for b in range(3):
+        ours, theirs = rays[:, 12 + b].astype(float), full[:, b]
+        ratio = ours.mean() / theirs.mean()
+        spread = np.std(ours - ratio * theirs) / np.sqrt(len(ours)) / theirs.mean()
+        yield BANDS[b].replace(" ", "_"), ours.mean(), theirs.mean(), 100 * (ratio - 1), 100 * spread
+
+
+def within(text, rays, plants, paths):
+    """Ground and leaves of rays that begin in a stand, leaves by their height over the ground."""
+    full = render(scene_of(text, plants, True), rays, -1, paths)
+    first = render(scene_of(text, plants, True), rays, 2, 4)
+    z = rays[:, 2] + rays[:, 6] * rays[:, 5]
+    leaf = (rays[:, 7] == PLANT_HIT) & (rays[:, 8] == LEAF)
+    of = {"ground": rays[:, 7] == GROUND_HIT, "bark": (rays[:, 7] == PLANT_HIT) & ~leaf, "leaves": leaf}
+    for low, high in HEIGHTS: of[f"leaves_{low}_{high}_m"] = leaf & (z >= low) & (z < high)
+    for what, some in of.items():
+        for b, (band, ours, theirs, percent, spread) in enumerate(errors(rays[some], full[some])):
+            print(f"within {what} {band} {ours:.4g} {theirs:.4g} {percent:+.2f} +- {spread:.2f} of {some.sum()} "
+                  f"first order {100 * first[some, b].mean() / theirs:.0f} %")
+
+
 def main(folder, paths):
     text, quads, outlines, rays = read(folder)
     plants = meshes(text, quads, outlines)
+    if len(rays) == WITHIN: return within(text, rays, plants, paths)
     scene = scene_of(text, plants, False)
     direct = render(scene, rays, 2, 1)
     width = 384

@@ -1,11 +1,11 @@
 /* plants_scene OUT SCENE SUN_DEG: plants on flat ground under a sun of that elevation and an even sky, seen by
  * Pitviper, with everything that another renderer needs to see the same: tests/system/plants_judge.py.
  *
- * SCENE: oak or pine (one, and its shadow) or stand (ninety trees of seven kinds, from above). Files of OUT, float32
- * rows:
- *     quads     12 corner coordinates, organ, kind, outline, albedo
- *     outlines  corners, then 24 u v pairs: one row for each kind and outline
- *     rays      origin, direction, range, kind of hit, plant's organ, then radiance of red, green, near infrared
+ * SCENE: oak or pine (one, and its shadow), stand (ninety trees of seven kinds, from above) or within (a
+ * broadleaf forest of the product's own density, by rays that begin in it: straight down to its ground, and any way
+ * from between its leaves). SUN_DEG below 0: there is no sun, under the same sky. Files of OUT, float32 rows: quads 12
+ * corner coordinates, organ, kind, outline, albedo outlines  corners, then 24 u v pairs: one row for each kind and
+ * outline rays      origin, direction, range, kind of hit, plant's organ, then radiance of red, green, near infrared
  *               under the sun alone, and again under sun and sky with what plants scatter
  * and scene.txt: names and numbers of the light and the materials. */
 #include "render/frame/shade_private.h"
@@ -16,7 +16,8 @@
 enum { most_trees = 90, bands = 3 };
 
 static const AirBand band_of[bands] = {AIR_R, AIR_G, AIR_NIR};
-static const double  ground_rho = 0.25, sun_w_m2 = 300, sky_w_m2_sr = 25;
+static const double  ground_rho = 0.25, sky_w_m2_sr = 25, within_m = 14;
+static double        sun_w_m2 = 300;
 
 typedef struct Shot {
     const char *name;
@@ -28,9 +29,11 @@ static const Shot shots[] = {
     {"oak", 1, PLANT_ENGLISH_OAK, 384, 384, 0, {-24, -20, 30}, {1, 2, 5}, 0.5},
     {"pine", 1, PLANT_PINE, 384, 384, 0, {-24, -20, 30}, {1, 2, 5}, 0.5},
     {"stand", most_trees, -1, 384, 256, 30, {-10, -110, 90}, {0, -4, 8}, 0.32},
+    {"within", 0, -1, 512, 16, 0, {0, 0, 1}, {0, 1, 1}, 1},
 };
 
 static Plant plant[most_trees];
+static bool  within; /* the shot's rays begin in the stand */
 
 static double dice(uint32_t stream, int index) { return random_uniform(1995, stream, 0, (uint64_t)index); }
 
@@ -62,6 +65,27 @@ static Woods plant_trees(const Shot *shot)
         for (int c = 0; c < 2; c++) plant[i].p_m[c] += (float)(2 * woods_square_m);
     for (int i = 0; i < shot->trees; i++) woods.by_kind[plant[i].kind]++;
     return woods;
+}
+
+/* A broadleaf forest of the density of its class, 88 m square. */
+static Status plant_forest(Woods *woods)
+{
+    static const double half_m = 44;
+    const Status        status = woods_of_class(woods, SURFACE_FOREST_BROADLEAF, 1, 7, 2);
+    int                 kept = 0, square = 0;
+    memset(woods->by_kind, 0, sizeof woods->by_kind);
+    for (int i = 0; i < woods->count && status == STATUS_OK; i++) {
+        const Plant p = woods->plant[i];
+        while ((uint32_t)i == woods->first[square]) woods->first[square++] = (uint32_t)kept;
+        if (fabs((double)p.p_m[0] + woods->origin_enu[0]) > half_m ||
+            fabs((double)p.p_m[1] + woods->origin_enu[1]) > half_m)
+            continue;
+        woods->plant[kept++] = p;
+        woods->by_kind[p.kind]++;
+    }
+    for (; status == STATUS_OK && square <= woods->nx * woods->ny; square++) woods->first[square] = (uint32_t)kept;
+    woods->count = kept;
+    return status;
 }
 
 /* ---- files ------------------------------------------------------------------------------------ */
@@ -115,7 +139,7 @@ static void write_scene(const char *folder, const double sun_enu[3], const Mater
     FILE *file = open_file(folder, "scene.txt");
     fprintf(file, "sun %.17g %.17g %.17g %g\nsky %g\nground %g\n", sun_enu[0], sun_enu[1], sun_enu[2], sun_w_m2,
             sky_w_m2_sr, ground_rho);
-    for (int kind = 0; kind < PLANT_TREES; kind++)
+    for (int kind = 0; kind < PLANT_STANDING; kind++)
         for (int organ = PLANT_BARK; organ <= PLANT_LEAF; organ++) {
             const Material *m = &materials->material[materials->plant[kind][organ]];
             fprintf(file, "material %d %d", kind, organ);
@@ -157,6 +181,23 @@ static void flatten(Plants *plants)
             if (!v3_normalize(n, n)) continue;
             for (int c = 0; c < 12; c++) q->n[c / 3][c % 3] = (float)n[c % 3];
         }
+}
+
+/* Rays that begin in the stand, evenly over its middle: those of the first quarter of the rows end on the ground, the
+ * others go evenly any way from a place between the lowest leaves and the highest. */
+static void fill_rays_within(Samples *s, const View *view, int row)
+{
+    const bool down = row < view->height / 4;
+    s->rays.count = view->width;
+    for (int i = 0; i < view->width; i++) {
+        const int    at = row * view->width + i;
+        const double up = down ? -1 : 2 * dice(10, at) - 1, turn = 2 * pi_rad * dice(11, at), flat = sqrt(1 - up * up);
+        const double o[3] = {within_m * (2 * dice(7, at) - 1), within_m * (2 * dice(8, at) - 1),
+                             down ? 0.1 : 1 + 21 * dice(9, at)};
+        const double d[3] = {flat * cos(turn), flat * sin(turn), up};
+        for (int c = 0; c < 3; c++) s->rays.o_enu[c][i] = o[c], s->rays.d_enu[c][i] = d[c];
+        s->rays.far_m[i] = INFINITY;
+    }
 }
 
 static void fill_rays(Samples *s, const View *view, int row)
@@ -207,7 +248,7 @@ static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world
     Status status = shade_scene_create(&scene, &request, channels, NULL, arena);
     if (status == STATUS_OK) status = shade_samples_create(s, view->width, arena);
     if (status == STATUS_OK) {
-        fill_rays(s, view, row);
+        (within ? fill_rays_within : fill_rays)(s, view, row);
         s->channels = channels, s->per_rad = 1; /* footprints so wide that bark has no relief */
         scene.plants.per_rad = 1;
         shade_samples_shade(&shader, &scene, s, NULL, -1);
@@ -261,13 +302,18 @@ int main(int argc, char **argv)
     for (size_t k = 0; argc == 4 && k < sizeof shots / sizeof *shots; k++)
         if (strcmp(argv[2], shots[k].name) == 0) shot = &shots[k];
     if (!shot || !text_to_double(&sun_rad, argv[3]))
-        return fprintf(stderr, "usage: plants_scene OUT oak|pine|stand SUN_DEG\n"), 2;
+        return fprintf(stderr, "usage: plants_scene OUT oak|pine|stand|within SUN_DEG\n"), 2;
+    within = strcmp(shot->name, "within") == 0;
+    if (sun_rad < 0) sun_w_m2 = 0, sun_rad = 45;
     sun_rad *= rad_per_deg;
     sun_enu[0] = 0.77 * cos(sun_rad), sun_enu[1] = -0.64 * cos(sun_rad), sun_enu[2] = sin(sun_rad);
     v3_normalize(sun_enu, sun_enu);
     config.relief_m = 0, config.half_width_m = 300, config.horizon_m = 2000;
-    Woods  woods = plant_trees(shot);
-    Status status = woods.first ? STATUS_OK : STATUS_NO_MEMORY;
+    Woods  woods = {0};
+    Status status = STATUS_OK;
+    if (within) status = plant_forest(&woods);
+    else woods = plant_trees(shot);
+    if (status == STATUS_OK && !woods.first) status = STATUS_NO_MEMORY;
     if (!etc_path(path, sizeof path, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = catalog_open(&catalog, path, 0.05);
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
@@ -287,6 +333,7 @@ int main(int argc, char **argv)
     world_close(&world);
     landscape_destroy(&landscape);
     catalog_close(catalog);
-    free(woods.first);
+    if (within) woods_destroy(&woods);
+    else free(woods.first);
     return status != STATUS_OK;
 }

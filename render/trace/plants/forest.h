@@ -47,6 +47,10 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
 /* Other woods of the same prototypes, by the scenes of `of`, which must outlive it. */
 Status forest_create_beside(Forest **out, const Forest *of, const Woods *woods);
 void   forest_destroy(Forest *forest);
+/* Fills in Plants.shade of the kinds that stand, at the finest level of the forest, by 1024 rays up and down for each
+ * of its ways: within 5 % of the whole shadow (tests/render/test_canopy_shade.c).
+ * pool: may be NULL; the same bits either way. */
+void forest_shade(Plants *plants, const Forest *forest, Pool *pool);
 /* Fills in PlantQuad.open_up and open_down of the forest's own prototypes, by rays through them: 24 a leaf, 8 a side of
  * a branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). Those of
  * patterned shapes are found when a ray first asks for them (ForestSurface): 2 a card and 2 a side; all cards of a

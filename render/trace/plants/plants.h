@@ -55,12 +55,27 @@ typedef struct PlantShape {
     float      crown_radius;    /* that holds nine tenths of the leaf area */
 } PlantShape;
 
+/* What a plant 1 m high, as wide as its prototype, hides on its own of level light from plant_shade_up (sines of
+ * elevation; places of Gauss' rule for 0 .. 1, of plant_shade_weight), the mean over all azimuths: area of the shadow,
+ * m2 of level ground, of what lies above, and below, shares of its height. 0: not found. */
+enum { plant_shade_ways = 4, plant_shade_heights = 9 };
+static const float  plant_shade_most = 100;
+static const double plant_shade_up[plant_shade_ways] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
+                                                        0.9305681557970262};
+static const double plant_shade_weight[plant_shade_ways] = {0.17392742256872692, 0.3260725774312731, 0.3260725774312731,
+                                                            0.17392742256872692};
+typedef struct PlantShade {
+    float above[plant_shade_ways][plant_shade_heights]; /* above share k / (plant_shade_heights - 1) of the height */
+    float below[plant_shade_ways][plant_shade_heights];
+} PlantShade;
+
 typedef struct Plants {
     PlantShape  shape[PLANT_KINDS][plant_levels];
     LeafOutline outline[PLANT_KINDS][plant_outlines];
     float       outline_area[PLANT_KINDS][plant_outlines]; /* share of the card */
     int patterned; /* kinds, from the first, whose cards of plant_fine have patterns; those of others have outlines */
     LeafPattern (*pattern)[plant_outlines]; /* [patterned] */
+    PlantShade shade[PLANT_STANDING];       /* by forest_shade */
 } Plants;
 
 /* Grows all kinds: a pure function of the seed. 0.3 s of one processor. */

@@ -3,6 +3,8 @@
 
 _Static_assert(offsetof(PlantQuad, open_down) == offsetof(PlantQuad, open_up) + sizeof(float), "they are two floats");
 
+_Static_assert(sizeof(PlantShade) == 2 * plant_shade_ways * plant_shade_heights * sizeof(float), "floats alone");
+
 static const size_t octets_a_quad = 2 * sizeof(float);
 
 /* Those whose light is kept. */
@@ -14,7 +16,8 @@ static PlantShape *shape_of(Plants *plants, int k)
 
 size_t plants_light_to_octets(void *out, const Plants *plants)
 {
-    size_t at = 0;
+    size_t at = sizeof plants->shade;
+    if (out) memcpy(out, plants->shade, sizeof plants->shade);
     for (int k = 0; k < PLANT_KINDS * plant_levels; k++) {
         const PlantShape *shape = shape_of((Plants *)(uintptr_t)plants, k);
         for (int q = 0; shape && q < shape->quads; q++, at += octets_a_quad)
@@ -29,8 +32,10 @@ Status plants_light_from_octets(Plants *plants, const void *octets, size_t count
     for (size_t at = 0; at < count; at += sizeof(float)) {
         float share;
         memcpy(&share, (const char *)octets + at, sizeof share);
-        if (!(share >= 0 && share <= 1)) return STATUS_BAD_VALUE;
+        if (!(share >= 0 && share <= (at < sizeof plants->shade ? plant_shade_most : 1))) return STATUS_BAD_VALUE;
     }
+    memcpy(plants->shade, octets, sizeof plants->shade);
+    octets = (const char *)octets + sizeof plants->shade;
     for (int k = 0; k < PLANT_KINDS * plant_levels; k++) {
         PlantShape *shape = shape_of(plants, k);
         for (int q = 0; shape && q < shape->quads; q++, octets = (const char *)octets + octets_a_quad)

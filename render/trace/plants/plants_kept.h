@@ -7,10 +7,11 @@
 
 #include "pitviper_kept.h"
 
-/* PlantQuad.open_up and open_down of shape after shape, but for patterned ones, two floats a quad: their length, and
- * the octets where out is not NULL. */
+/* Plants.shade, then PlantQuad.open_up and open_down of shape after shape, but for patterned ones, two floats a quad:
+ * their length, and the octets where out is not NULL. */
 size_t plants_light_to_octets(void *out, const Plants *plants);
-/* STATUS_BAD_VALUE: they are not of these shapes, or a share is not in 0 .. 1; nothing has changed then. */
+/* STATUS_BAD_VALUE: they are not of these shapes, a share is not in 0 .. 1, or a shadow not in 0 .. plant_shade_most;
+ * nothing has changed then. */
 Status plants_light_from_octets(Plants *plants, const void *octets, size_t count);
 
 /* Where what follows from prototypes is kept: beside them, by their name. */

@@ -263,7 +263,7 @@ static void cast(void *user)
     heat_shadow_destroy(s->map);
     s->map = NULL;
     s->status = heat_shadow_create(
-        &s->map, &(ShadowOf){s->elevation, s->cell_m, s->slots, s->d_enu, groves, NULL, NULL}, s->pool);
+        &s->map, &(ShadowOf){s->elevation, s->cell_m, s->slots, s->d_enu, groves, NULL, NULL, NULL}, s->pool);
     bench_keep(s->map);
 }
 

@@ -61,7 +61,7 @@ static void cast(void *user)
     heat_shadow_destroy(c->map);
     c->map = NULL;
     c->status = heat_shadow_create(
-        &c->map, &(ShadowOf){c->elevation, config_default().heat.shadow_m, c->slots, c->d_enu, NULL, NULL, NULL},
+        &c->map, &(ShadowOf){c->elevation, config_default().heat.shadow_m, c->slots, c->d_enu, NULL, NULL, NULL, NULL},
         c->pool);
     bench_keep(c->map);
 }
