@@ -218,7 +218,8 @@ static inline void add_cell(Depth *to, const Canopy *c, const CanopyCell *cell, 
 static inline void add_sky(Depth *to, const Canopy *c, const CanopyCell *cell, const CanopySky *own, double share,
                            double height_m)
 {
-    const bool   plants = cell && cell->leaf_area > 0;
+    const bool plants = cell && cell->leaf_area > 0;
+    if (own ? !(own->area | own->towards[0] | own->towards[1]) : !plants) return;
     const double here = plants ? leaf_area_step * cell->leaf_area * clumped_step * cell->clumped : 0;
     const double area = own ? sky_area_step * own->area : here;
     const double x = canopy_share_at(c->above, plants ? height_in(cell, height_m) : height_in(&c->mean, height_m));
@@ -271,6 +272,10 @@ void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
 
 /* ---- hits ------------------------------------------------------------------------------------- */
 
+/* As fmin and fmax for finite numbers; those compile to calls. */
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+static inline double larger(double a, double b) { return a > b ? a : b; }
+
 /* What other plants leave of the sky that a leaf sees past its own crown, which is open aside rather than upwards:
  * between what they leave of the light on level ground and on walls; of the light on walls for all leaves, most of
  * which lie deep. */
@@ -293,37 +298,52 @@ static void see_leaves(CanopyPlace *p, double sun_depth)
                                    : depth * (p->sun_here - p->up) / ((1 - p->up) * off);
 }
 
-static bool place_at(CanopyPlace *out, const Canopy *c, const double p_m[2], double height_m, double sin_sun,
-                     bool pages)
+/* The members of a place that are asked for: all, those of a leaf or branch to which its own plant leaves some, or
+ * those of another surface. */
+typedef enum PlaceOf { PLACE_OF_ANY, PLACE_OF_PLANT, PLACE_OF_GROUND } PlaceOf;
+
+static const CanopyPlace open_place = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, .low = 1};
+
+static double through(double slant, double area) { return area > 0 ? exp(-slant * area) : 1; }
+
+/* slant: of the sun. Inlined for each of what is asked for. */
+static inline __attribute__((always_inline)) void place_of(CanopyPlace *out, const Canopy *c, const Depth *depth,
+                                                           double slant, PlaceOf of)
 {
-    const Depth  depth = depth_at(c, p_m[0], p_m[1], height_m > 0 ? height_m : 0, pages);
-    const double slant = 0.5 * canopy_clumping(c, sin_sun) / fmax(sin_sun, 0.05);
-    if (!(depth.all_sky > 0) && !(depth.all > 0)) {
-        *out = (CanopyPlace){1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, .low = 1};
-        return false;
-    }
     /* shares of other plants in what hides sky and sun */
-    const double sky = 1 - c->own / fmax(fmax(depth.all_sky, c->own), 1e-9),
-                 sun = 1 - c->own / fmax(fmax(depth.all, c->own), 1e-9);
-    *out = (CanopyPlace){.up = between_gaps(c->gap, 0.5 * depth.sky),
-                         .down = between_gaps(c->gap, 0.5 * depth.ground),
-                         .up_from_ground = between_gaps(c->gap, 0.5 * depth.all_sky),
-                         .sun_here = exp(-slant * depth.sun),
-                         .sun_on_ground = exp(-slant * depth.all),
-                         .past_up = past_others(c, 0.5 * sky * depth.sky),
-                         .past_low_up = between_gaps(c->low_gap, 0.5 * sky * depth.sky),
-                         .past_down = past_others(c, 0.5 * sun * depth.ground),
-                         .past_low_down = between_gaps(c->low_gap, 0.5 * sun * depth.ground),
-                         .past_sun = exp(-slant * sun * depth.sun),
-                         .low = between_gaps(c->low_gap, 0.5 * depth.sky),
-                         .towards = {depth.towards[0], depth.towards[1]}};
-    see_leaves(out, slant * depth.sun);
-    return true;
+    const double sky = 1 - c->own / larger(larger(depth->all_sky, c->own), 1e-9),
+                 sun = 1 - c->own / larger(larger(depth->all, c->own), 1e-9);
+    const double past_sky = 0.5 * sky * depth->sky, past_ground = 0.5 * sun * depth->ground;
+    out->up_from_ground = between_gaps(c->gap, 0.5 * depth->all_sky);
+    out->sun_on_ground = through(slant, depth->all);
+    out->past_low_up = between_gaps(c->low_gap, past_sky);
+    out->past_sun = through(slant * sun, depth->sun);
+    if (of != PLACE_OF_GROUND) {
+        out->past_up = past_others(c, past_sky), out->past_down = past_others(c, past_ground);
+        out->past_low_down = between_gaps(c->low_gap, past_ground);
+    }
+    if (of == PLACE_OF_PLANT) return;
+    out->up = between_gaps(c->gap, 0.5 * depth->sky), out->down = between_gaps(c->gap, 0.5 * depth->ground);
+    out->sun_here = depth->sun == depth->all ? out->sun_on_ground : through(slant, depth->sun);
+    out->low = between_gaps(c->low_gap, 0.5 * depth->sky);
+    out->towards[0] = depth->towards[0], out->towards[1] = depth->towards[1];
+    see_leaves(out, slant * depth->sun);
 }
+
+static double slant_of(const Canopy *c, double sin_sun)
+{
+    return 0.5 * canopy_clumping(c, sin_sun) / fmax(sin_sun, 0.05);
+}
+
+static bool is_among(const Depth *depth) { return depth->all_sky > 0 || depth->all > 0; }
 
 bool canopy_place(CanopyPlace *out, const Canopy *c, double x_m, double y_m, double height_m, double sin_sun)
 {
-    return place_at(out, c, (const double[2]){x_m, y_m}, height_m, sin_sun, false);
+    const Depth depth = depth_at(c, x_m, y_m, height_m > 0 ? height_m : 0, false);
+    *out = open_place;
+    if (!is_among(&depth)) return false;
+    place_of(out, c, &depth, slant_of(c, sin_sun), PLACE_OF_ANY);
+    return true;
 }
 
 void canopy_place_past_plant(double *up, double *down, const CanopyPlace *p, const Canopy *c, double open_up,
@@ -351,16 +371,31 @@ void canopy_place_of_ground(CanopyPlace *p, const Canopy *c)
     p->up = open * fmin(p->seen_up * up, 1), p->sun_here = open * fmin(p->seen_sun * sun, 1);
 }
 
-/* half: of what a surface scatters. */
-static inline double exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *p, double half,
-                              double sun_w_m2, double sky_w_m2, double sin_sun, double ground_rho)
+/* Light of a channel over a canopy; half: of what a surface of it scatters. */
+typedef struct Overhead {
+    double half, sun_w_m2, sky_w_m2, sin_sun, ground_rho;
+} Overhead;
+
+/* Of a place, what exitance needs: of the mean leaf or branch. sun_here 0 where the sun is down. */
+typedef struct LeafPlaces {
+    double up[hits_capacity], down[hits_capacity], up_from_ground[hits_capacity];
+    double sun_here[hits_capacity], sun_on_ground[hits_capacity];
+} LeafPlaces;
+
+static inline void put_place(LeafPlaces *to, int i, const CanopyPlace *p, const Canopy *c, double sin_sun)
 {
-    const double up = fmin(c->open_up, p->up), down = fmin(c->open_down, p->down);
-    const double from_above = sun_w_m2 * sin_sun * p->sun_on_ground + sky_w_m2 * p->up_from_ground;
-    const double on_leaf = 0.5 * sun_w_m2 * (sin_sun > 0 ? fmin(c->open_up, p->sun_here) : 0);
-    const double from_below = down * ground_rho, shaded = 1 - p->up_from_ground;
-    const double leaves = half * (on_leaf + up * sky_w_m2 + from_below * from_above) /
-                          fmax(1 - half * (2 - up - down + from_below * shaded), 1e-6);
+    to->up[i] = smaller(c->open_up, p->up), to->down[i] = smaller(c->open_down, p->down);
+    to->up_from_ground[i] = p->up_from_ground;
+    to->sun_here[i] = sin_sun > 0 ? smaller(c->open_up, p->sun_here) : 0, to->sun_on_ground[i] = p->sun_on_ground;
+}
+
+static inline double exitance(double *on_ground_w_m2, const LeafPlaces *p, int i, const Overhead *o)
+{
+    const double from_above = o->sun_w_m2 * o->sin_sun * p->sun_on_ground[i] + o->sky_w_m2 * p->up_from_ground[i];
+    const double on_leaf = 0.5 * o->sun_w_m2 * p->sun_here[i];
+    const double from_below = p->down[i] * o->ground_rho, shaded = 1 - p->up_from_ground[i];
+    const double lost = 1 - o->half * (2 - p->up[i] - p->down[i] + from_below * shaded);
+    const double leaves = o->half * (on_leaf + p->up[i] * o->sky_w_m2 + from_below * from_above) / larger(lost, 1e-6);
     *on_ground_w_m2 = from_above + shaded * leaves;
     return leaves;
 }
@@ -368,7 +403,23 @@ static inline double exitance(double *on_ground_w_m2, const Canopy *c, const Can
 double canopy_exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *place, int channel, double sun_w_m2,
                        double sky_w_m2, double sin_sun, double ground_rho)
 {
-    return exitance(on_ground_w_m2, c, place, 0.5 * c->scattered[channel], sun_w_m2, sky_w_m2, sin_sun, ground_rho);
+    const Overhead o = {0.5 * c->scattered[channel], sun_w_m2, sky_w_m2, sin_sun, ground_rho};
+    LeafPlaces     one;
+    put_place(&one, 0, place, c, sin_sun);
+    return exitance(on_ground_w_m2, &one, 0, &o);
+}
+
+static void light_of(float *restrict leaves_w_m2, float *restrict ground, const LeafPlaces *places, int count,
+                     const Overhead *over)
+{
+    const Overhead o = *over;
+    const double   open_w_m2 = o.sun_w_m2 * o.sin_sun + o.sky_w_m2;
+    for (int i = 0; i < count; i++) {
+        double on_ground_w_m2;
+        leaves_w_m2[i] = (float)exitance(&on_ground_w_m2, places, i, &o);
+        ground[i] = (float)(on_ground_w_m2 / open_w_m2);
+    }
+    for (int i = 0; i < count && !(open_w_m2 > 0); i++) ground[i] = 1;
 }
 
 /* What a surface receives of an even sky, over what its tilt alone would leave it. From zenith to walls all around: the
@@ -396,46 +447,46 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
                   const float ground_rho[optical_channel_count], const Hits *hits, unsigned channels)
 {
     const double sin_sun = fmax(light->sun_d_enu[2], 0), reach_m = canopy_pages_reach_m(c);
+    const double slant = slant_of(c, sin_sun);
     bool         any = false;
-    CanopyPlace  place[hits_capacity];
+    LeafPlaces   places;
     for (int i = 0; i < hits->count; i++) {
         const int next = i + 8;
         if (landscape && next < hits->count && hits->kind[next] == hit_plant)
             ask_for_height(&landscape->elevation, hits->p_enu[0][next], hits->p_enu[1][next]);
         const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
-        double       height_m = 0;
-        place[i] = (CanopyPlace){1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, .low = 1};
-        if (!(hits->range_m[i] < INFINITY)) continue;
-        if (hits->kind[i] != hit_ground && landscape)
-            height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
-        const bool pages = reach_m > 0 && (hits->kind[i] == hit_plant || hits->range_m[i] < reach_m);
-        any |= place_at(&place[i], c, (const double[2]){x_m, y_m}, isfinite(height_m) ? height_m : 0, sin_sun, pages) |
-               (hits->kind[i] == hit_plant);
+        const bool   plant = hits->kind[i] == hit_plant, met = hits->range_m[i] < INFINITY;
+        CanopyPlace  place = open_place;
+        Depth        depth = {0};
+        if (met) {
+            const bool pages = reach_m > 0 && (plant || hits->range_m[i] < reach_m);
+            double     height_m = 0;
+            if (hits->kind[i] != hit_ground && landscape)
+                height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
+            depth = depth_at(c, x_m, y_m, height_m > 0 && isfinite(height_m) ? height_m : 0, pages);
+        }
+        const bool among = is_among(&depth);
+        any |= among || (plant && met);
+        if (!plant) {
+            if (among) place_of(&place, c, &depth, slant, PLACE_OF_GROUND);
+            out->up[i] = (float)sky_on(&place, hits, i), out->down[i] = (float)place.down;
+            canopy_place_of_ground(&place, c);
+        } else {
+            const bool own = c->own > 0;
+            double     up, down;
+            if (among && own) place_of(&place, c, &depth, slant, PLACE_OF_PLANT);
+            else if (among) place_of(&place, c, &depth, slant, PLACE_OF_ANY);
+            canopy_place_past_plant(&up, &down, &place, c, (double)hits->open_up[i], (double)hits->open_down[i]);
+            out->up[i] = (float)up, out->down[i] = (float)down;
+            if (own) canopy_place_of_plant(&place, c);
+        }
+        put_place(&places, i, &place, c, sin_sun);
     }
     if (!any) return false;
-    for (int i = 0; i < hits->count; i++) {
-        CanopyPlace *p = &place[i];
-        if (hits->kind[i] != hit_plant) {
-            out->up[i] = (float)sky_on(p, hits, i), out->down[i] = (float)p->down;
-            canopy_place_of_ground(p, c);
-            continue;
-        }
-        double up, down;
-        canopy_place_past_plant(&up, &down, p, c, (double)hits->open_up[i], (double)hits->open_down[i]);
-        out->up[i] = (float)up, out->down[i] = (float)down;
-        if (c->own > 0) canopy_place_of_plant(p, c);
-    }
     for (int k = 0; k < optical_channel_count; k++) {
-        if (!(channels >> k & 1)) continue;
-        const double sun_w_m2 = light->sun_w_m2[k], sky_w_m2 = light->sky_w_m2[k], half = 0.5 * c->scattered[k];
-        const double open_w_m2 = sun_w_m2 * sin_sun + sky_w_m2;
-        for (int i = 0; i < hits->count; i++) {
-            double       from_above_and_leaves;
-            const double leaves = exitance(&from_above_and_leaves, c, &place[i], half, sun_w_m2, sky_w_m2, sin_sun,
-                                           (double)ground_rho[k]);
-            out->leaves_w_m2[k][i] = (float)leaves;
-            out->ground[k][i] = (float)(open_w_m2 > 0 ? from_above_and_leaves / open_w_m2 : 1);
-        }
+        const Overhead o = {0.5 * c->scattered[k], light->sun_w_m2[k], light->sky_w_m2[k], sin_sun,
+                            (double)ground_rho[k]};
+        if (channels >> k & 1) light_of(out->leaves_w_m2[k], out->ground[k], &places, hits->count, &o);
     }
     return true;
 }

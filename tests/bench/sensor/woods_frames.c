@@ -216,7 +216,8 @@ static Status read_parts(unsigned *parts, const Bench *bench)
         int          k = 0;
         while (k < WOODS_PARTS && (strlen(part_name[k]) != length || memcmp(part_name[k], at, length) != 0)) k++;
         if (k == WOODS_PARTS) {
-            log_error("bench: --parts: '%s' is not some of times, errors, vehicles, flight and seeker, joined by +", text);
+            log_error("bench: --parts: '%s' is not some of times, errors, vehicles, flight and seeker, joined by +",
+                      text);
             return STATUS_BAD_VALUE;
         }
         *parts |= 1u << k;
@@ -305,7 +306,8 @@ static Status judge_all(WoodsBench *w)
 {
     const ForestConfig full = config_of(w, 0, false);
     Status             status = STATUS_OK;
-    if (!woods_wants(w, WOODS_ERRORS) && !woods_wants(w, WOODS_VEHICLES) && !woods_wants(w, WOODS_FLIGHT)) return status;
+    if (!woods_wants(w, WOODS_ERRORS) && !woods_wants(w, WOODS_VEHICLES) && !woods_wants(w, WOODS_FLIGHT))
+        return status;
     if (!forest_config(w->forest[0]).all_fine) status = woods_replace(w, 0, &full);
     for (int v = 0; v < woods_views && status == STATUS_OK; v++)
         if (woods_wants(w, WOODS_ERRORS) && w->views >> v & 1) status = woods_errors(w, v);
