@@ -91,7 +91,7 @@ int far_stand_at_azimuth(double *share, double azimuth_rad);
  * Relief and hills shade them as any ground, from the crowns' height. Slopes change the angle of the eye alone.
  *
  * Errors beside the same woods planted (tests/render/test_far_woods.c: means over 1.2 km; eye at 15 to 60 degrees, sun
- * at 9 to 63): optical channels 8 % rms, within 12 % (near infrared 10 %, 18 %), with the sun behind the eye within 12
+ * at 9 to 63): optical channels 8 % rms, within 12 % (near infrared 10 %, 19 %), with the sun behind the eye within 12
  * degrees 18 %; 0.7 K apparent in 3-5 um, 0.6 K in 8-12 um. Without leaves 14 % rms, within 23 %; 2.1 K, 1.6 K. */
 
 enum { far_stands = 2 /* broadleaf, conifer */, far_densities = 2, far_grounds = 2 /* of its own class; scrub */ };
