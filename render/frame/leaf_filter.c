@@ -80,7 +80,7 @@ static void smooth_row(float *restrict out, const Job *job, const float *plane, 
         const int    dx = k % 3 - 1, dy = k / 3 - 1;
         const float *of = weight->of[k];
         if (k == beside_own || y + dy < 0 || y + dy >= height) continue;
-        const int    first = x + dx<0, end = x + count + dx> width ? count - 1 : count;
+        const int    first = (x + dx < 0), end = (x + count + dx > width) ? count - 1 : count;
         const float *value = plane + pixel_index(job, x + first + dx, y + dy);
         for (int i = first; i < end; i++) {
             const float more = out[i] + of[i] * value[i - first];

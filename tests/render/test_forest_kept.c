@@ -178,7 +178,7 @@ static void coarse_texels(void **state)
     forest_destroy(two), forest_destroy(none);
 }
 
-/* Two programs that find different values at the same time lose none, whoever ends first. */
+/* Two programs that find different values at the same time lose none, in whatever order they end. */
 static void two_at_once(void **state)
 {
     (void)state;

@@ -199,9 +199,91 @@ static void large_terrain_has_larger_cells(void **state)
     elevation_destroy(&ground);
 }
 
+/* Between four cells the shares of each slot, by sixteenths of a cell, rounded to the nearest of 255. */
+static void places_between_cells(void **state)
+{
+    (void)state;
+    enum { slots = 11 };
+    float      d[3][shadow_most_slots] = {{0}};
+    ShadowMap *map;
+    double     open;
+    int        mixed = 0;
+    ridge(40);
+    for (int s = 0; s < slots; s++) slot(d, s, 60 + 20 * s, 9 + 4 * s);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, slots, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_OK);
+    for (int i = -30; i < 30; i++) {
+        uint8_t corner[4][shadow_most_slots], found[shadow_most_slots];
+        for (int k = 0; k < 4; k++) heat_shadow_at(corner[k], &open, map, 8 * (i + (k & 1)), 8 * (k >> 1));
+        for (unsigned u = 0; u < 16; u += 3)
+            for (unsigned v = 0; v < 16; v += 5) {
+                const unsigned w[4] = {(16 - u) * (16 - v), u * (16 - v), (16 - u) * v, u * v};
+                heat_shadow_at(found, &open, map, 8 * i + 0.5 * u, 0.5 * v);
+                for (int s = 0; s < slots; s++) {
+                    const double sum =
+                        w[0] * corner[0][s] + w[1] * corner[1][s] + w[2] * corner[2][s] + w[3] * corner[3][s];
+                    CHECK(found[s] == (unsigned)floor(sum / 256 + 0.5));
+                    mixed += found[s] > 0 && found[s] < 255;
+                }
+            }
+    }
+    CHECK(mixed > 100);
+    heat_shadow_destroy(map);
+    elevation_destroy(&ground);
+    ground = (Elevation){0};
+}
+
+/* What four places side by side lost of the past sun, beside one place after another: the same bits. */
+static void places_side_by_side(void **state)
+{
+    (void)state;
+    enum { slots = 16, kind = SURFACE_GRASS };
+    static HeatNow now;
+    float          d[3][shadow_most_slots] = {{0}};
+    ShadowMap     *map;
+    int            shaded = 0;
+    ridge(40);
+    memset(&now, 0, sizeof now);
+    now.slots = slots, now.table.facets = 3;
+    for (int s = 0; s < slots; s++) {
+        slot(d, s, 70 + 14 * s, 8 + 3 * (s < 8 ? s : 15 - s));
+        for (int c = 0; c < 3; c++) now.slot_d_enu[c][s] = d[c][s];
+        now.table.slot_k[kind][s] = 0.3f + 0.17f * (float)s;
+    }
+    for (int k = 0; k < SURFACE_COUNT; k++) now.kind_of[k] = k;
+    for (int k = 0; k < 9; k++) now.table.sun_k[kind][k] = 307;
+    for (int k = 0; k < heat_ups; k++) now.table.shade_k[kind][k] = 291, now.table.dark_k[kind][k] = 284;
+    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, slots, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_OK);
+    const HeatScene scene = {&now, map, NULL};
+    for (int first = 0; first < 60; first += heat_lanes) {
+        GroundPlaces at = {.surface = {kind, kind, kind, kind}};
+        HeatPlaces   one_by_one;
+        double       temp_k[heat_lanes], lifted_k[heat_lanes], want_k[heat_lanes];
+        for (int k = 0; k < heat_lanes; k++) {
+            const double lean = 0.01 * (first + 3 * k), n_enu[3] = {sin(lean), 0, cos(lean)};
+            const double x_m = 5.3 * (first + k) - 150;
+            uint8_t      shadow[shadow_most_slots];
+            at.p_enu[0][k] = x_m, at.p_enu[1][k] = 7 * k, at.dark[k] = one_by_one.dark[k] = 1;
+            heat_shadow_at(shadow, &one_by_one.open[k], map, x_m, 7 * k);
+            one_by_one.kind[k] = kind, one_by_one.taken[k] = heat_taken(&now, kind, n_enu, shadow);
+            shaded += one_by_one.taken[k] > 0.05 && one_by_one.taken[k] < 0.95;
+            for (int c = 0; c < 3; c++) at.n_enu[c][k] = one_by_one.n_enu[c][k] = n_enu[c];
+        }
+        heat_scene_grounds_k(temp_k, lifted_k, &scene, &at);
+        heat_grounds_k(want_k, &now, &one_by_one);
+        for (int k = 0; k < heat_lanes; k++) CHECK(temp_k[k] == want_k[k]);
+    }
+    CHECK(shaded > 20);
+    heat_shadow_destroy(map);
+    elevation_destroy(&ground);
+    ground = (Elevation){0};
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(length_of_a_shadow), cmocka_unit_test(cells_behind_a_ridge),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(length_of_a_shadow),
+                                       cmocka_unit_test(cells_behind_a_ridge),
+                                       cmocka_unit_test(places_between_cells),
+                                       cmocka_unit_test(places_side_by_side),
                                        cmocka_unit_test(light_below_a_stand),
                                        cmocka_unit_test(light_through_one_column),
                                        cmocka_unit_test(large_terrain_has_larger_cells)};

@@ -14,7 +14,7 @@ typedef struct CrownLeaf {
     ClutterScatterer scatterer;
 } CrownLeaf;
 
-/* The first scatterers of a crown. Whoever asked for them fills leaf[drawn ..], and says so in `drawn`. */
+/* The first scatterers of a crown. The caller that asked for them fills leaf[drawn ..], and sets `drawn`. */
 typedef struct CrownLeaves {
     uint32_t            crown;
     int                 room, drawn;

@@ -8,7 +8,7 @@
 
 #include <pthread.h>
 
-/* OpenImageIO brings 250 libraries along, OpenEXR five: whoever only writes loads no more than these. */
+/* OpenImageIO needs 250 libraries, OpenEXR five: a run that only writes pictures loads no more than these five. */
 /* clang-format off */
 #define EXR_MODULE(X) X(exr_module_write)
 #define IMAGE_MODULE(X)                                                                                              \
