@@ -192,6 +192,9 @@ static const Field sensor_rows[] = {
      FIELD_EXACT},
     {"scene_rate_px_s", "px/s", "image: column, row", "", "image motion of a stationary object at the image centre",
      OF_FRAME(scene_rate_px_s), FIELD_WITHIN(0.01, 1e-5), .channel = FIELD_TARGETS},
+    {"ground_km2", "km2", "on the map", "",
+     "ground that the image shows within 10 km, as if nothing stood on it: what was searched for targets",
+     OF_FRAME(ground_km2), FIELD_WITHIN(1e-4, 0.02), .channel = FIELD_TARGETS, .newer = true},
 };
 
 static const Field band_error_rows[] = {

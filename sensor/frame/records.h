@@ -32,6 +32,7 @@ typedef struct FrameRecord {
     double                hfov_rad;
     bool                  gimbal_at_limit;
     double                scene_rate_px_s[2]; /* column, row: image motion of a stationary point at the centre */
+    double                ground_km2;         /* truth_ground_area; NaN: not requested */
     const Sun            *sun;
     const TargetRecord   *target;
     int                   target_count;

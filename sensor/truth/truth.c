@@ -1,7 +1,5 @@
-/* sensor/truth/truth.c: truth of the targets in a frame, and where the image meets the ground. */
+/* sensor/truth/truth.c: truth of the targets in a frame. */
 #include "sensor/truth/truth.h"
-#include "terrain/earth/refraction.h"
-#include "render/trace/ground/ground.h"
 
 /* Rate at which the Earth turns, rad/s. Source: IERS Conventions 2010, table 1.2 (nominal mean angular velocity). */
 static const double earth_rate_rps = 7.292115e-5;
@@ -306,33 +304,4 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
         out[count++] = t;
     }
     return count;
-}
-
-/* ---- the footprint ------------------------------------------------------------------------------- */
-
-static GroundPoint ground_point(const Ground *ground, const LocalFrame *frame, const View *view, double column_px,
-                                double row_px)
-{
-    double      d_enu[3], p_enu[3], p_ecef[3];
-    Geodetic    place;
-    GroundPoint out = {.known = false};
-    view_ray(d_enu, view, column_px, row_px);
-    const double range_m = ground_first_hit(NULL, ground, view->p_enu, d_enu, INFINITY);
-    if (!(range_m > 0 && range_m < INFINITY)) return out;
-    v3_add_scaled(p_enu, view->p_enu, range_m, d_enu);
-    p_enu[2] -= refraction_drop(ground->bend_per_m, view->p_enu, p_enu);
-    ecef_from_enu(p_ecef, frame, p_enu);
-    if (geodetic_from_ecef(&place, p_ecef) != STATUS_OK) return out;
-    return (GroundPoint){true, place.lat_rad, place.lon_rad, place.h_m, range_m};
-}
-
-void truth_footprint(GroundPoint out[FOOTPRINT_COUNT], const World *world, const RenderRequest *request)
-{
-    const View  *view = &request->view;
-    const double corner[FOOTPRINT_COUNT][2] = {{0.5, 0.5}, {0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    Ground       ground;
-    ground_prepare(&ground, world->landscape ? &world->landscape->elevation : NULL);
-    if (request->refraction) ground.bend_per_m = world_bend(world, REFRACTION_OPTICAL, view->p_enu);
-    for (int k = 0; k < FOOTPRINT_COUNT; k++)
-        out[k] = ground_point(&ground, &world->frame, view, corner[k][0] * view->width, corner[k][1] * view->height);
 }

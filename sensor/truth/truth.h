@@ -83,4 +83,10 @@ typedef enum FootprintPoint {
  * pixels, where the lens shows them; lines of sight bend as in the images. A sensor below the ground: none known. */
 void truth_footprint(GroundPoint out[FOOTPRINT_COUNT], const World *world, const RenderRequest *request);
 
+/* Map area, m2, of the ground that the image shows within truth_ground_far_m of the sensor: what a recogniser has
+ * searched. By 8192 rays over the terrain's posts; plants on it count as ground. Over a plain within 0.5 % where no
+ * horizon is in the image, within 3 % where that range is. 0: none is seen, or there is no terrain. */
+static const double truth_ground_far_m = 10e3;
+double              truth_ground_area(const World *world, const RenderRequest *request);
+
 #endif

@@ -136,6 +136,50 @@ static void through_a_lens(void **state)
     CHECK(out[FOOTPRINT_UPPER_LEFT].range_m > plain[FOOTPRINT_UPPER_LEFT].range_m + 10); /* a barrel shows more */
 }
 
+/* Over a plain, on paper: the trapezoid between its corners. */
+static void area_of_a_trapezoid(void **state)
+{
+    (void)state;
+    const View   view = view_at(2100, true, 30);
+    const double across = tan(10 * rad_per_deg), c = cos(30 * rad_per_deg);
+    const double far = 2000 / (0.5 - 0.75 * across * c),
+                 near = 2000 / (0.5 + 0.75 * across * c); /* along the boresight */
+    const double far_x = far * (c + 0.5 * 0.75 * across), near_x = near * (c - 0.5 * 0.75 * across);
+    const double area_m2 = (far_x - near_x) * (far + near) * across;
+    CHECK_NEAR(truth_ground_area(&lab.world, &(RenderRequest){.view = view}) / area_m2, 1, 0.005);
+}
+
+/* With the horizon in it: the sector of 10 km of slant range, less what is below the image. */
+static void area_of_a_sector(void **state)
+{
+    (void)state;
+    const View   view = view_at(300, true, 0);
+    const double half = 10 * rad_per_deg, height = 200, reach = sqrt(1e8 - height * height);
+    double       area_m2 = 0;
+    enum { slices = 4000 }; /* of azimuth: the image's lower edge is straight, at height over the sine of depression */
+    for (int k = 0; k < slices; k++) {
+        const double azimuth = (-1 + (k + 0.5) * 2 / slices) * half, near = height / (0.75 * tan(half)) / cos(azimuth);
+        area_m2 += 0.5 * (reach * reach - near * near) * 2 * half / slices;
+    }
+    CHECK_NEAR(truth_ground_area(&lab.world, &(RenderRequest){.view = view}) / area_m2, 1, 0.03);
+    CHECK(truth_ground_area(&lab.world, &(RenderRequest){.view = view_at(50, true, 30)}) == 0); /* below the ground */
+    CHECK(truth_ground_area(&lab.world, &(RenderRequest){.view = view_at(300, true, -40)}) == 0);
+    CHECK(truth_ground_area(&(World){.frame = lab.world.frame}, &(RenderRequest){.view = view}) == 0);
+}
+
+/* A wall hides what is behind it: from 600 m towards the east less is seen than towards the west. */
+static void area_before_a_wall(void **state)
+{
+    (void)state;
+    const double west_m2 = truth_ground_area(&lab.world, &(RenderRequest){.view = view_at(600, true, 4)});
+    const double east_m2 = truth_ground_area(&lab.world, &(RenderRequest){.view = view_at(600, false, 4)});
+    /* the wall's foot is at 3.5 km, its top at 4 km 900 m high: a sector to where rays meet it */
+    const double half = tan(10 * rad_per_deg), near = 500 / tan((4 + 7.5) * rad_per_deg);
+    CHECK(west_m2 > 2 * east_m2);
+    CHECK(east_m2 < half * (4000.0 * 4000 - near * near * 0.8));
+    CHECK(east_m2 > half * (3500.0 * 3500 - near * near * 1.2));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -143,6 +187,9 @@ int main(void)
         cmocka_unit_test(the_nearer_ground_counts),
         cmocka_unit_test(none_above_the_horizon),
         cmocka_unit_test(through_a_lens),
+        cmocka_unit_test(area_of_a_trapezoid),
+        cmocka_unit_test(area_of_a_sector),
+        cmocka_unit_test(area_before_a_wall),
     };
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

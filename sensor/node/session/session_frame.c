@@ -189,6 +189,7 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
         r->error = &f->error;
     r->target = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
     if (!r->target) return STATUS_NO_MEMORY;
+    r->ground_km2 = 1e-6 * truth_ground_area(shared->world, &f->request);
     return STATUS_OK;
 }
 
@@ -204,6 +205,7 @@ static void fill_record(Frame *f, const Session *s, const Eye *eye)
                        .hfov_rad = s->shared->config->sensor.hfov_deg * rad_per_deg,
                        .gimbal_at_limit = eye->at_limit,
                        .scene_rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]},
+                       .ground_km2 = NAN,
                        .sun = &f->sun};
     memcpy(r->p_eye_ecef, eye->state.p_ecef, sizeof r->p_eye_ecef);
     memcpy(r->v_eye_mps, eye->state.v_ecef_mps, sizeof r->v_eye_mps);
