@@ -25,7 +25,7 @@
 
 enum {
     score_recognisers_max = 4,
-    score_classes_max = 40, /* target_class_count() is less */
+    score_classes_max = 96, /* target_class_count() is not more */
     score_bins_max = 12,
     score_curve_max = 101,
     score_words_max = 8,
