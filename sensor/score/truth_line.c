@@ -2,6 +2,7 @@
 #include "sensor/score/truth_line.h"
 #include "sensor/frame/target_record.h"
 #include "sensor/score/json_member.h"
+#include "sensor/score/json_pick.h"
 #include "terrain/earth/geodesy.h"
 
 #include <stdlib.h>
@@ -155,9 +156,55 @@ static Status read_frame(TruthFrame *out, const json_t *line, const JsonStream *
     return status;
 }
 
+/* The line's JSON, of what is read here alone. */
+static json_t *load(TruthFrame *out, const JsonStream *s)
+{
+    static const char *const wanted[] = {"frame",
+                                         "time_s",
+                                         "host",
+                                         "lat_deg",
+                                         "lon_deg",
+                                         "height_m",
+                                         "sun",
+                                         "azimuth_deg",
+                                         "elevation_deg",
+                                         "sensors",
+                                         "bands",
+                                         "width_px",
+                                         "height_px",
+                                         "hfov_deg",
+                                         "vfov_deg",
+                                         "ground_km2",
+                                         "distortion",
+                                         "ecef_from_cam",
+                                         "targets",
+                                         "entity",
+                                         "class",
+                                         "range_m",
+                                         "aspect_deg",
+                                         "pixels",
+                                         "visible_fraction",
+                                         "foliage_fraction",
+                                         "box_px",
+                                         "amodal_box_px",
+                                         "snr"};
+    enum { wanted_count = sizeof wanted / sizeof *wanted };
+    const char *names[wanted_count + BAND_COUNT];
+    memcpy(names, wanted, sizeof wanted);
+    for (int b = 0; b < BAND_COUNT; b++) names[wanted_count + b] = band_name((Band)b);
+    if (s->length > out->text_room) {
+        char *grown = realloc(out->text, 2 * s->length);
+        if (!grown) return NULL;
+        out->text = grown;
+        out->text_room = 2 * s->length;
+    }
+    const size_t length = json_pick(out->text, s->text, s->length, names, wanted_count + BAND_COUNT);
+    return length > 0 ? json_loadb(out->text, length, 0, NULL) : NULL;
+}
+
 Status truth_line_read(TruthFrame *out, const JsonStream *s)
 {
-    json_t *line = json_loadb(s->text, s->length, 0, NULL);
+    json_t *line = load(out, s);
     Status  status = json_is_object(line) ? read_frame(out, line, s) : wrong(s, "a line that is no JSON object");
     json_decref(line);
     return status;
@@ -166,6 +213,7 @@ Status truth_line_read(TruthFrame *out, const JsonStream *s)
 void truth_frame_free(TruthFrame *frame)
 {
     free(frame->target);
+    free(frame->text);
     *frame = (TruthFrame){0};
 }
 

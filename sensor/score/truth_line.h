@@ -21,7 +21,9 @@ typedef struct TruthFrame {
     double       focal_px, r_cam_from_enu[9]; /* enu: at the sensor */
     Lens         lens;
     int          count, room;
-    TruthTarget *target; /* [count], in the order of ids; kept from line to line */
+    TruthTarget *target; /* [count], in truth's order; kept from line to line, as text */
+    size_t       text_room;
+    char        *text; /* what is wanted of the line */
 } TruthFrame;
 
 /* Overwrites *out, whose list it may make longer. STATUS_BAD_VALUE, logged: not a frame of truth, or the same entity
