@@ -19,7 +19,7 @@ static const char help[] =
     "  lines of JSON        frame, band, class, score, and box_px [left, top, right, bottom] or los_deg [azimuth from\n"
     "                       north, elevation]; optional track, range_m, latency_ms (`pitviper help answers`)\n"
     "  or COCO results      [{image_id, category_id, bbox, score}], by the images of OUT/coco.json\n"
-    "Writes score.json (`pitviper help score`) into OUT.\n"
+    "Writes score.json (`pitviper help score.json`) into OUT.\n"
     "\n"
     "  --bands LIST         bands to be scored (default: those that were answered)\n"
     "  --score S            answers of a lower score do not count in rates and confusion (0)\n"

@@ -11,7 +11,7 @@
 #define SENSOR_SCORE_ANSWERS_H
 
 #include "sensor/score/coco_truth.h"
-#include "sensor/score/score.h"
+#include "sensor/score/report.h"
 
 typedef struct Answer {
     double   box[4];         /* left, top, width, height, px, as COCO; of a line of sight azimuth and elevation, deg */

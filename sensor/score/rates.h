@@ -2,7 +2,7 @@
 #ifndef SENSOR_SCORE_RATES_H
 #define SENSOR_SCORE_RATES_H
 
-#include "sensor/score/score.h"
+#include "sensor/score/report.h"
 
 typedef struct RateCounts {
     long long chances, found, recognised, frames, answered, false_alarms;
