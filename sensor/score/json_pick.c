@@ -108,7 +108,8 @@ static void pick_object(Pick *p, int depth)
         any = true;
         pick_value(p, depth + 1);
     }
-    p->at += p->good;
+    if (!p->good) return; /* there may be no room for ends that the text does not have */
+    p->at++;
     *p->out++ = '}';
 }
 
@@ -122,7 +123,8 @@ static void pick_list(Pick *p, int depth)
         if (!first) *p->out++ = ',', p->at++;
         pick_value(p, depth + 1);
     }
-    p->at += p->good;
+    if (!p->good) return;
+    p->at++;
     *p->out++ = ']';
 }
 
