@@ -28,11 +28,10 @@
 #include "pitviper.h"
 
 enum {
-    tracks_answers_most = 64,   /* of a frame; as pitviper_detections_most */
-    tracks_present_most = 1024, /* truths of a frame */
+    tracks_frame_most = 1024,   /* truths, and answers, of a frame; the rest of a list is dropped */
     tracks_truths_most = 4096,  /* of a sequence */
     tracks_pairs_most = 262144, /* of a sequence: truth and track that met; beyond: the pairs that met least leave */
-    tracks_open_most = 65536,   /* tracks whose lengths and shares are still counted; beyond: the longest unseen end */
+    tracks_open_most = 65536,   /* tracks whose answers are still counted; beyond: those longest without any end */
 };
 
 typedef struct TracksTruth {
@@ -85,11 +84,12 @@ typedef struct TracksScore {
     uint64_t coast_most;       /* frames of the longest */
     double   coast_similarity; /* sum over coast_frames */
     uint64_t returns, resumed; /* hidings whose truth is matched again later; by the same track */
-    /* left out */
-    uint64_t beside, untracked,
-        repeated;            /* answers: see above; without a track; of a track that the frame had before */
-    uint64_t truths_dropped; /* visible truths without room, summed over frames; within present and idfn */
-    uint64_t pairs_dropped, tracks_ended; /* for want of room; a track that ended so and answers again is a new one */
+    /* left out; truths_dropped are among present and idfn */
+    uint64_t beside, untracked, repeated; /* answers: above; without a track; of a track that the frame had before */
+    uint64_t crowded;                     /* answers of a frame beyond tracks_frame_most */
+    uint64_t truths_dropped;              /* visible truths for which there was no room, summed over frames */
+    uint64_t pairs_dropped;               /* for want of room */
+    uint64_t tracks_ended;                /* likewise; one that answers again is counted as a new one */
 } TracksScore;
 
 /* What became of one truth. */
@@ -104,8 +104,8 @@ typedef struct Tracks Tracks;
 /* threshold: of similarity, above 0 up to 1. STATUS_NO_MEMORY. */
 Status tracks_create(Tracks **out, double threshold);
 void   tracks_destroy(Tracks *tracks); /* NULL is valid */
-/* STATUS_BAD_VALUE, logged: a list is longer than its limit, an index or a similarity is out of range, a truth is there
- * twice, or time does not advance; the frame is then left out. STATUS_NO_MEMORY. */
+/* STATUS_BAD_VALUE, logged: a truth is there twice, or time does not advance; the frame is then left out.
+ * STATUS_NO_MEMORY: no further call but tracks_destroy. */
 Status tracks_frame(Tracks *tracks, const TracksFrame *frame);
 /* The scores so far; frames may follow. STATUS_NO_MEMORY. */
 Status tracks_score(TracksScore *out, const Tracks *tracks);
