@@ -22,6 +22,8 @@
 #define SENSOR_SCORE_SCORE_H
 
 #include "render/scene/view.h"
+#include "sensor/score/tracks.h"
+#include "sensor/score/worst.h"
 
 enum {
     score_recognisers_max = 4,
@@ -154,6 +156,8 @@ typedef struct ScoreRecogniser {
     ScoreAges      ages;
     int            points;
     ScorePoint     curve[score_curve_max];
+    TracksScore    tracks; /* sequences 0: no answer has a track */
+    WorstCases     missed, false_alarms;
 } ScoreRecogniser;
 
 typedef struct ScoreReport {
