@@ -3,7 +3,7 @@
 
 #include "sensor/frame/json_object.h"
 #include "sensor/frame/target_record.h"
-#include "sensor/score/score.h"
+#include "sensor/score/report.h"
 
 #define IN_RATES(member)      FIELD_MEMBER(ScoreRates, member)
 #define IN_SHARE(member)      FIELD_MEMBER(ScoreShare, member)
