@@ -229,7 +229,7 @@ void page_tracks(FILE *page, const ScoreReport *report)
         {"for frames, mean", "%.1f", coast_length},
         {"for frames, most", "%.0f", coast_most},
         {"share of these frames on the target", "%.3f", coast_held},
-        {"overlap with the target, mean IoU", "%.3f", coast_similarity},
+        {"overlap with the target, mean similarity", "%.3f", coast_similarity},
         {"times that the target is found again", "%.0f", returns},
         {"by the same track", "%.0f", resumed},
     };
