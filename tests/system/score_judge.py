@@ -2,7 +2,8 @@
 
     score_judge.py counts SCORE EXPECTED      the counts that answers were made for (score_folder.py), exactly
     score_judge.py coco-make FOLDER SEED      truth.jsonl, coco.json and results.json of random boxes
-    score_judge.py coco SCORE COCO RESULTS    average precision as pycocotools has it, to 1e-9"""
+    score_judge.py coco SCORE COCO RESULTS    average precision as pycocotools has it, to 1e-9
+    score_judge.py coco-of FOLDER             made.json and results.json of truth.jsonl and answers.jsonl, where there is no coco.json"""
 import contextlib, io, json, math, random, sys
 
 wrong = []
@@ -76,6 +77,29 @@ def coco_make(folder, seed):
                "info": {}}, open(f"{folder}/coco.json", "w"))
     json.dump(results, open(f"{folder}/results.json", "w"))
 
+def coco_of(folder):
+    ids, bands = {"tank": 1, "truck": 9}, ("optical", "mwir", "lwir", "radar")
+    images, annotations, results = [], [], []
+    for line in open(f"{folder}/truth.jsonl"):
+        frame = json.loads(line)
+        for band in frame["sensors"][0]["bands"]:
+            image = 4 * frame["frame"] + bands.index(band) + 1
+            images.append({"id": image, "band": band})
+            for t in frame["targets"]:
+                if "box_px" not in t: continue
+                x0, y0, x1, y1 = t["box_px"]
+                annotations.append({"id": len(annotations) + 1, "image_id": image, "category_id": ids[t["class"]], "bbox": [x0, y0, x1 - x0, y1 - y0],
+                                    "area": t["pixels"], "iscrowd": int(t["pixels"] < 5)})
+    for a in map(json.loads, open(f"{folder}/answers.jsonl")):
+        if a.get("class") not in ids: continue
+        x0, y0, x1, y1 = a["box_px"]
+        results.append({"image_id": 4 * a["frame"] + bands.index(a["band"]) + 1, "category_id": ids[a["class"]], "score": a["score"],
+                        "bbox": [x0, y0, x1 - x0, y1 - y0]})
+    results.sort(key=lambda a: (a["image_id"], -a["score"], a["bbox"], a["category_id"]))
+    json.dump({"images": images, "annotations": annotations, "categories": [{"id": i, "name": n} for n, i in ids.items()], "info": {}},
+              open(f"{folder}/made.json", "w"))
+    json.dump(results, open(f"{folder}/results.json", "w"))
+
 def coco(score, truth, results):
     from pycocotools.coco import COCO
     from pycocotools.cocoeval import COCOeval
@@ -106,6 +130,6 @@ def coco(score, truth, results):
     print(compared, "average precisions compared")
     if compared < 6: wrong.append("too few were compared")
 
-{"counts": counts, "coco-make": lambda folder, seed, *_: coco_make(folder, int(seed)), "coco": coco}[sys.argv[1]](*sys.argv[2:])
+{"counts": counts, "coco-make": lambda folder, seed, *_: coco_make(folder, int(seed)), "coco": coco, "coco-of": coco_of}[sys.argv[1]](*sys.argv[2:])
 for line in wrong[:20]: print("FAILED:", line)
 sys.exit(bool(wrong))

@@ -20,6 +20,9 @@ shuf --random-source=<(yes) "$tmp/one/answers.jsonl" >"$tmp/shuffled.jsonl" && c
 run score "$tmp/one" --overwrite
 check "answers in another order: the same to the octet" cmp "$tmp/one/score.json" "$tmp/first.json"
 
+python3 tests/system/score_judge.py coco-of "$tmp/one"
+judge "average precision without coco.json" coco "$tmp/one/score.json" "$tmp/one/made.json" "$tmp/one/results.json"
+
 python3 tests/system/score_folder.py "$tmp/sweep" --frames 12 --sequences 4 --seed 5
 run score "$tmp/sweep"
 check "sweep" [ $code = 0 ] && check "sweep: variants" grep -q '48 frames of 4 variants' "$tmp/stdout"
