@@ -2,9 +2,10 @@
 
     score_judge.py counts SCORE EXPECTED      the counts that answers were made for (score_folder.py), exactly
     score_judge.py coco-make FOLDER SEED      truth.jsonl, coco.json and results.json of random boxes
+    score_judge.py coco-sweep FOLDER SEED     the same of two variants: manifest.jsonl, one coco.json of both, one results.json
     score_judge.py coco SCORE COCO RESULTS    average precision as pycocotools has it, to 1e-9
     score_judge.py coco-of FOLDER             made.json and results.json of truth.jsonl and answers.jsonl, where there is no coco.json"""
-import contextlib, io, json, math, random, sys
+import contextlib, io, json, math, os, random, sys
 
 wrong = []
 def same(what, got, want, within=0.0):
@@ -77,6 +78,22 @@ def coco_make(folder, seed):
                "info": {}}, open(f"{folder}/coco.json", "w"))
     json.dump(results, open(f"{folder}/results.json", "w"))
 
+def coco_sweep(folder, seed):
+    images, annotations, results = [], [], []
+    with open(f"{folder}/manifest.jsonl", "w") as manifest:
+        for v in ("va", "vb"):
+            os.makedirs(f"{folder}/{v}")
+            coco_make(f"{folder}/{v}", seed + len(images))
+            one, new = json.load(open(f"{folder}/{v}/coco.json")), {}
+            for i in one["images"]:
+                new[i["id"]] = len(images) + 1
+                images.append(i | {"id": len(images) + 1, "variant": v})
+            for a in one["annotations"]: annotations.append(a | {"id": len(annotations) + 1, "image_id": new[a["image_id"]]})
+            for a in json.load(open(f"{folder}/{v}/results.json")): results.append(a | {"image_id": new[a["image_id"]]})
+            manifest.write(json.dumps({"folder": v, "status": "kept"}) + "\n")
+    json.dump({"images": images, "annotations": annotations, "categories": one["categories"], "info": {}}, open(f"{folder}/coco.json", "w"))
+    json.dump(results, open(f"{folder}/results.json", "w"))
+
 def coco_of(folder):
     ids, bands = {"tank": 1, "truck": 9}, ("optical", "mwir", "lwir", "radar")
     images, annotations, results = [], [], []
@@ -130,6 +147,7 @@ def coco(score, truth, results):
     print(compared, "average precisions compared")
     if compared < 6: wrong.append("too few were compared")
 
-{"counts": counts, "coco-make": lambda folder, seed, *_: coco_make(folder, int(seed)), "coco": coco, "coco-of": coco_of}[sys.argv[1]](*sys.argv[2:])
+{"counts": counts, "coco-make": lambda folder, seed, *_: coco_make(folder, int(seed)), "coco": coco, "coco-of": coco_of,
+ "coco-sweep": lambda folder, seed: coco_sweep(folder, int(seed))}[sys.argv[1]](*sys.argv[2:])
 for line in wrong[:20]: print("FAILED:", line)
 sys.exit(bool(wrong))

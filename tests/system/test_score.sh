@@ -48,6 +48,14 @@ for seed in 1 2; do
     check "average precision, spoilt" eval '! python3 tests/system/score_judge.py coco "$tmp/spoilt.json" "$tmp/coco$seed/coco.json" "$tmp/coco$seed/results.json" >"$tmp/said"'
 done
 
+mkdir "$tmp/both"
+python3 tests/system/score_judge.py coco-sweep "$tmp/both" 11
+run score "$tmp/both" "$tmp/both/results.json"
+check "COCO results of a sweep" [ $code = 0 ] && check "COCO results of a sweep: frames" grep -q '80 frames of 2 variants' "$tmp/stdout"
+judge "average precision of a sweep" coco "$tmp/both/score.json" "$tmp/both/coco.json" "$tmp/both/results.json"
+run score "$tmp/both/va" "$tmp/both/results.json"
+check "COCO results of images that are elsewhere" [ $code = 1 ] && complained 'image_id'
+
 # ---- side by side
 run score "$tmp/one" "$tmp/one/answers.jsonl" "$tmp/shuffled.jsonl" "$tmp/one/answers.jsonl" --out "$tmp/side" --score 0.5
 check "side by side" [ $code = 0 ] && check "side by side: names" grep -qE '^ +answers +shuffled +answers-2' "$tmp/stdout"
