@@ -25,6 +25,7 @@ static const char rules[] =
     ".heat .right{outline:2px solid var(--line);outline-offset:-2px}.heat small{display:block;line-height:1.1}\n"
     ".crop{position:relative;display:inline-block;line-height:0}.crop img{width:88px;height:88px;max-width:none;object-fit:fill}\n"
     ".crop i{position:absolute;outline:1.5px solid #ff3b30}table.cases td,table.cases th{vertical-align:middle;padding:.2rem clamp(.3rem,.9vw,.7rem)}\n"
+    "@media(max-width:760px){.cases{font-size:.85rem}.crop img{width:64px;height:64px}}\n"
     "dl{display:grid;grid-template-columns:max-content 1fr;gap:.2rem 1.2rem}dd{margin:0}\n";
 
 void page_text(FILE *page, const char *text)

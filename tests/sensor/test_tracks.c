@@ -356,7 +356,7 @@ static void a_flood_of_tracks(void **state)
     Tracks *t;
     assert_int_equal(tracks_create(&t, 0.5), STATUS_OK);
     TracksTruth  truth[2] = {{.id = 1}, {.id = 2}};
-    TracksAnswer answer[answers];
+    TracksAnswer answer[answers] = {{0}};
     TracksPair   pair[answers];
     for (int j = 0; j < answers; j++) pair[j] = (TracksPair){j > 0, j, 0.9};
     for (uint32_t n = 0; n < frames; n++) {
