@@ -18,13 +18,14 @@ static const char rules[] =
     ".figures th.rec{text-align:center;border-left:1px solid var(--line)}.figures .first{border-left:1px solid var(--line)}\n"
     ".plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,26rem),1fr));gap:1rem}\n"
     ".plots figure{margin:0}.plots svg{display:block;width:100%;height:auto;border:1px solid var(--line);border-radius:6px}\n"
-    ".pair{display:flex;flex-wrap:wrap;gap:1rem 3rem}\n"
+    ".pair{display:flex;flex-wrap:wrap;gap:1rem 3rem}.pair>section{flex:1 1 auto;max-width:100%}\n"
     "details{margin:.3rem 0 .6rem;font-size:.9rem}summary{cursor:pointer;opacity:.7}\n"
     ".heat td{text-align:right;min-width:3.4rem}.heat td.none{opacity:.35}.heat .end{border-left:2px solid var(--line)}\n"
     ".heat th{font-weight:400}.heat thead th{text-align:right;vertical-align:bottom}.heat tbody th{text-align:left}\n"
     ".heat .right{outline:2px solid var(--line);outline-offset:-2px}.heat small{display:block;line-height:1.1}\n"
-    ".crop{position:relative;display:inline-block;line-height:0}.crop img{width:88px;height:88px;object-fit:fill}\n"
-    ".crop i{position:absolute;outline:1.5px solid #ff3b30}.cases td{vertical-align:middle}\n"
+    ".crop{position:relative;display:inline-block;line-height:0}.crop img{width:88px;height:88px;max-width:none;object-fit:fill}\n"
+    ".crop i{position:absolute;outline:1.5px solid #ff3b30}table.cases td,table.cases th{vertical-align:middle;padding:.2rem clamp(.3rem,.9vw,.7rem)}\n"
+    "@media(max-width:760px){.cases{font-size:.85rem}.crop img{width:64px;height:64px}}\n"
     "dl{display:grid;grid-template-columns:max-content 1fr;gap:.2rem 1.2rem}dd{margin:0}\n";
 
 void page_text(FILE *page, const char *text)
@@ -215,8 +216,11 @@ Status score_write_page(const ScoreReport *report, const char *path)
     page_plots(page, report);
     page_curves(page, report);
     page_classes(page, report);
+    fputs("<div class=\"pair\"><section>", page);
     page_tracks(page, report);
+    fputs("</section><section>", page);
     page_errors(page, report);
+    fputs("</section></div>\n", page);
     page_cases(page, report);
     put_recognisers(page, report);
     put_rules(page, &report->rules);

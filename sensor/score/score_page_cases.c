@@ -126,8 +126,11 @@ static void put_case(FILE *page, const ScoreReport *report, const WorstCase *c, 
         fputs("</span>", page);
     } else if (c->track) html_text(page, ", track %u", c->track);
     fputs("</td><td class=\"n\">", page);
-    if (has_box(c))
-        html_text(page, "%.0f, %.0f; %.0f \xc3\x97 %.0f", c->box_px[0], c->box_px[1], c->box_px[2], c->box_px[3]);
+    if (has_box(c)) {
+        html_text(page, "%.0f, %.0f", c->box_px[0], c->box_px[1]);
+        fputs("<br>", page);
+        html_text(page, "%.0f \xc3\x97 %.0f", c->box_px[2], c->box_px[3]);
+    }
     fputs("</td>", page);
     if (miss) {
         page_cell(page, "%.0f", c->weight);
@@ -175,7 +178,7 @@ void page_cases(FILE *page, const ScoreReport *report)
     char scratch[temp_path_size] = "";
     if (!temp_file(scratch, ".png")) scratch[0] = 0;
     fputs("<h2>Worst misses</h2>\n<p class=\"dim\">Of each target the frame of its most visible pixels in which it was "
-          "missed; the largest first. Box: left, top; width &times; height.</p>\n",
+          "missed; the largest first. Box: left, top, and width &times; height.</p>\n",
           page);
     put_cases(page, report, true, scratch);
     fputs("<h2>Worst false alarms</h2>\n<p class=\"dim\">Of answers alike the one of the highest score.</p>\n", page);

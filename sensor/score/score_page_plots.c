@@ -118,14 +118,14 @@ static void put_shares(FILE *page, const ScoreReport *report, int k, int which, 
                        const SvgAxis *y)
 {
     const ScoreRecogniser *r = &report->recogniser[k];
-    const double           aside = 0.16 * (k - 0.5 * (report->recognisers - 1)); /* points of several do not cover */
     const bool             wide = report->recognisers == 1 && which != AGAINST_COUNT;
-    const double           half = wide ? 0.5 : 0.06;
+    const double           slot_px = svg_at(x, 1) - svg_at(x, 0), step_px = fmin(0.16 * slot_px, 22);
+    const double           aside_px = step_px * (k - 0.5 * (report->recognisers - 1)); /* so that none covers another */
+    const double           half_px = wide ? 0.5 * slot_px : 0.38 * step_px;
     for (int i = 0; i < s->count; i++) {
         if (!has_rate(r, which, s, i)) continue;
         const ScoreShare *share = &rates_in(r, which, &s->slot[i])->detection;
-        const double      middle = i + 0.5 + aside;
-        const double      left = svg_at(x, middle - half), right = svg_at(x, middle + half);
+        const double      middle = svg_at(x, i + 0.5) + aside_px, left = middle - half_px, right = middle + half_px;
         svg_area_begin(page, page_colour[k], wide ? 0.2 : 0.28);
         svg_curve_point(page, left, svg_at(y, share->low));
         svg_curve_point(page, left, svg_at(y, share->high));
@@ -137,13 +137,13 @@ static void put_shares(FILE *page, const ScoreReport *report, int k, int which, 
         if (!has_rate(r, which, s, i) || !has_rate(r, which, s, i + 1)) continue;
         svg_curve_begin(page, &(SvgPen){page_colour[k], 1.8, page_dashes[k]});
         for (; has_rate(r, which, s, i); i++)
-            svg_curve_point(page, svg_at(x, i + 0.5 + aside),
+            svg_curve_point(page, svg_at(x, i + 0.5) + aside_px,
                             svg_at(y, rates_in(r, which, &s->slot[i])->detection.value));
         svg_curve_end(page);
     }
     for (int i = 0; i < s->count; i++)
         if (has_rate(r, which, s, i))
-            svg_circle(page, &(SvgPen){.colour = page_colour[k]}, svg_at(x, i + 0.5 + aside),
+            svg_circle(page, &(SvgPen){.colour = page_colour[k]}, svg_at(x, i + 0.5) + aside_px,
                        svg_at(y, rates_in(r, which, &s->slot[i])->detection.value), 4);
 }
 
@@ -198,7 +198,7 @@ static void put_plot(FILE *page, const ScoreReport *report, int which)
 {
     Slots s;
     find_slots(&s, report, which);
-    if (s.count == 0) return;
+    if (s.count < 2) return;
     const SvgAxis x = {.low = 0, .high = s.count, .from_px = box.left, .to_px = box.right};
     const SvgAxis y = {
         .low = 0, .high = 1, .from_px = box.bottom, .to_px = box.top, .ticks = 6, .tick = {0, 0.2, 0.4, 0.6, 0.8, 1}};
@@ -212,6 +212,21 @@ static void put_plot(FILE *page, const ScoreReport *report, int which)
     fputs("</figure>\n", page);
 }
 
+/* What all targets are alike in, and has no plot. */
+static void put_alike(FILE *page, const ScoreReport *report)
+{
+    int count = 0;
+    for (int which = 0; which <= AGAINST_COUNT; which++) {
+        Slots s;
+        find_slots(&s, report, which);
+        if (s.count != 1) continue;
+        fputs(count++ ? "; " : "<p class=\"dim\">All targets to be found are of one bin in ", page);
+        fprintf(page, "%s: ", which == AGAINST_COUNT ? "band" : quantity[which].axis);
+        put_bin_name(page, &s.slot[0], which);
+    }
+    if (count) fputs(".</p>\n", page);
+}
+
 void page_plots(FILE *page, const ScoreReport *report)
 {
     fputs(
@@ -222,4 +237,5 @@ void page_plots(FILE *page, const ScoreReport *report)
     fputs("<div class=\"plots\">\n", page);
     for (int which = 0; which <= AGAINST_COUNT; which++) put_plot(page, report, which);
     fputs("</div>\n", page);
+    put_alike(page, report);
 }

@@ -26,9 +26,10 @@ static void put_precisions(FILE *page, const ScoreReport *report)
     }
     fputs("<tr><th>class</th><th class=\"n\">targets</th>", page);
     for (int k = 0; k < report->recognisers; k++)
-        fputs("<th class=\"n first\">answers</th><th class=\"n\">AP</th><th class=\"n\">AP50</th><th "
-              "class=\"n\">by centres</th>",
-              page);
+        fprintf(page,
+                "<th class=\"n%s\">answers</th><th class=\"n\">AP</th><th class=\"n\">AP50</th><th "
+                "class=\"n\">by centres</th>",
+                report->recognisers > 1 ? " first" : "");
     fputs("</tr></thead><tbody>\n", page);
     for (int c = 1; c <= target_class_count(); c++) {
         const char           *name = target_class_name(c);

@@ -26,7 +26,6 @@ Status tracks_create(Tracks **out, double threshold)
     Tracks *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
     t->threshold = threshold;
-    t->last_t_s = -INFINITY;
     t->truths.size = sizeof(TracksTruthState);
     t->pairs.size = sizeof(TracksPairCount);
     t->open.size = sizeof(TracksOpen);
@@ -314,17 +313,10 @@ static Status follow_truth(const Step *s, Tracks *t, int i)
 
 Status tracks_frame(Tracks *t, const TracksFrame *frame)
 {
-    if (!(frame->t_s > t->last_t_s)) {
-        log_warn("tracks: the frame at %.6f s is left out: the one before it is at %.6f s; give frames in order of "
-                 "time, each once",
-                 frame->t_s, t->last_t_s);
-        return STATUS_BAD_VALUE;
-    }
     arena_reset(t->arena);
     Step   s = {.frame = frame};
     Status status = order_truths(&s, t);
     if (status != STATUS_OK) return status;
-    t->last_t_s = frame->t_s;
     t->frame++;
     t->sum.frames++;
     int visible = 0, scored = 0;

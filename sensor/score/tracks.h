@@ -50,7 +50,7 @@ typedef struct TracksPair {
 } TracksPair;
 
 typedef struct TracksFrame {
-    double              t_s; /* greater than of the frame before */
+    double              t_s; /* for delays alone; frames are in the order of the calls */
     const TracksTruth  *truth;
     int                 truths;
     const TracksAnswer *answer;
@@ -104,8 +104,8 @@ typedef struct Tracks Tracks;
 /* threshold: of similarity, above 0 up to 1. STATUS_NO_MEMORY. */
 Status tracks_create(Tracks **out, double threshold);
 void   tracks_destroy(Tracks *tracks); /* NULL is valid */
-/* STATUS_BAD_VALUE, logged: a truth is there twice, or time does not advance; the frame is then left out.
- * STATUS_NO_MEMORY: no further call but tracks_destroy. */
+/* STATUS_BAD_VALUE, logged: a truth is there twice; the frame is then left out. STATUS_NO_MEMORY: no further call but
+ * tracks_destroy. */
 Status tracks_frame(Tracks *tracks, const TracksFrame *frame);
 /* The scores so far; frames may follow. STATUS_NO_MEMORY. */
 Status tracks_score(TracksScore *out, const Tracks *tracks);

@@ -44,7 +44,6 @@ typedef struct TracksList {
 
 struct Tracks {
     double      threshold;
-    double      last_t_s;
     uint64_t    frame, step; /* frames so far; those with visible truths and scored answers */
     TracksScore sum;         /* all but what follows from the lists */
     TracksList  truths, pairs, open;

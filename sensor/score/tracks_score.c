@@ -76,7 +76,7 @@ static void add_truth(TracksScore *score, const TracksTruthScore *truth)
     score->mostly_tracked += share > 0.8;
     score->mostly_lost += share < 0.2;
     if (!truth->matched) return;
-    const double delay_s = truth->found_t_s - truth->seen_t_s;
+    const double delay_s = fmax(0, truth->found_t_s - truth->seen_t_s); /* where time goes back: 0 */
     score->truths_found++;
     score->delay_s += delay_s;
     score->delay_s_most = fmax(score->delay_s_most, delay_s);
