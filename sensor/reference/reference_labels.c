@@ -5,7 +5,7 @@
 #include "render/frame/planes.h"
 #include "sensor/commands/sweep/sweep.h"
 #include "sensor/publish/consumers/consume_pairs.h"
-#include "sensor/publish/memory/detections.h"
+#include "sensor/publish/answers/answers.h"
 
 static const ReferenceWord words[] = {REFERENCE_WORD_BAND};
 
