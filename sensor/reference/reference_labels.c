@@ -114,9 +114,10 @@ const Reference reference_answers = {
     .file = "answers.jsonl",
     .title = "the answers of a recogniser: a line of JSON per detection",
     .about =
-        "With publish.detections_port (etc/reference/memory.md). One answer counts for a frame and band, the first; "
+        "With publish.detections_port (etc/reference/answers.md). One answer counts for a frame and band, the first; "
         "repeated ones,\n"
-        "and all that are refused, are counted in run.json: counters.answers.",
+        "and all that are refused, are counted in run.json: counters.answers. The lines of an answer, sent back in one datagram,\n"
+        "are that answer.",
     .table = &answer_fields,
     .word = REFERENCE_FIELDS(words),
     .python =
@@ -125,7 +126,8 @@ const Reference reference_answers = {
         "    answer = json.loads(line)\n"
         "    if answer['of'] == 0:               # nothing was found\n"
         "        continue\n"
-        "    print(answer['frame'], answer['band'], answer['class'], answer['box_px'], answer['score'], answer['latency_ms'])\n",
+        "    where = answer.get('box_px') or answer['los_deg']\n"
+        "    print(answer['frame'], answer['band'], answer['class'], where, answer.get('score'), answer['latency_ms'])\n",
 };
 
 /* ---- manifest.jsonl and the page of a sweep ------------------------------------------------------ */

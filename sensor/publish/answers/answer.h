@@ -12,6 +12,7 @@
 #ifndef SENSOR_PUBLISH_ANSWERS_ANSWER_H
 #define SENSOR_PUBLISH_ANSWERS_ANSWER_H
 
+#include "sensor/frame/field.h"
 #include "sensor/frame/publish_counters.h"
 #include "sensor/frame/records.h"
 
@@ -60,6 +61,8 @@ typedef struct AnswerScope {
 AnswerForm answer_form(const uint8_t *bytes, size_t size);
 /* Reads one datagram. out: valid if ANSWER_GOOD; the frame is not looked up. */
 AnswerReason answer_read(Answer *out, const uint8_t *bytes, size_t size, const AnswerScope *scope);
+
+extern const FieldTable answer_fields; /* a line of answers.jsonl (answer_lines.c) */
 
 /* ---- with the camera of its frame ---------------------------------------------------------------- */
 

@@ -1,7 +1,6 @@
 /* sensor/publish/answers/answer_lines.c: answers.jsonl: its fields, and the file. */
 #include "sensor/publish/answers/answer_lines_private.h"
 #include "pitviper_output.h"
-#include "sensor/publish/answers/answers.h"
 
 #include <errno.h>
 #include <math.h>

@@ -7,7 +7,6 @@
 #ifndef SENSOR_PUBLISH_ANSWERS_ANSWERS_H
 #define SENSOR_PUBLISH_ANSWERS_ANSWERS_H
 
-#include "sensor/frame/field.h"
 #include "sensor/publish/answers/answer.h"
 #include "sensor/publish/consumers/consumer.h"
 
@@ -44,7 +43,6 @@ bool answers_latest(Answers *answers, Band band, Answer *out);
 /* So far. */
 void answers_counters(Answers *answers, AnswerCounters *out);
 
-extern const FieldTable answer_fields; /* a line of answers.jsonl */
 /* Tells them of every frame, and has them recorded; answers and folder stay the caller's and outlive it. */
 Status consume_answers(Consumer **out, Answers *answers, const char *folder);
 
