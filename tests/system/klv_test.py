@@ -3,7 +3,7 @@
 
 samples DATA        the readers themselves, on packets that others made (folder data/klv)
 pose OUT            the chain of angles against truth.jsonl's camera, and ST 0903 against its targets
-atr OUT             a recogniser's detections as ST 0903; sent meanwhile by: klv_test.py send PORT COMMAND...
+atr OUT             a recogniser's answers, in three forms, as records and as ST 0903; sent by: klv_test.py send PORT OUT COMMAND...
 ground OUT TIF CRS  frame centre and corners against rays marched through the elevation file itself, from the pose that
                     is in the metadata; positions by gdaltransform (PROJ), heights by gdal_translate. The range plane too
 
@@ -183,36 +183,190 @@ def both(a, b):
           [[t[n] for n in names] for t in a["targets"]] == [[t["id"], t.get("2"), t.get("3")] for t in b["targets"]])
 
 
-# ---- a recogniser's detections --------------------------------------------------------------------------
+# ---- a recogniser's answers -------------------------------------------------------------------------------
 
-def send(port, command):
-    """Runs a command; meanwhile two detections in every frame, as etc/include/pitviper_memory.h has them. Its code."""
+FORMS = "ring", "json", "klv"  # of frame n: that of n modulo 3
+BOXES = [("tank", [3, 4, 21, 10], 0.75, 9), ("truck", [1, 1, 5, 5], 0.5, 0)]
+SIGHT = 0.045, -0.03  # tangents right and down of a third detection's line of sight, without a box
+RANGE_M = 900
+MIIS = "0170F592F02373364AF8AA9162C00F2EB2DA16B74341000841A0BE365B5AB96A3645"  # an id of a platform: no concern of ours
+
+
+def image_of(sensor):
+    """Column and row of SIGHT, through the lens: OpenCV's model, which truth.jsonl has."""
+    x, y = SIGHT
+    k1, k2, p1, p2, k3 = sensor.get("distortion", [0] * 5)
+    r2 = x * x + y * y
+    g = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+    focal = sensor["width_px"] / 2 / math.tan(math.radians(sensor["hfov_deg"] / 2))
+    return (sensor["width_px"] / 2 + focal * (x * g + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)),
+            sensor["height_px"] / 2 + focal * (y * g + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y))
+
+
+def sight_of(line):
+    """Azimuth and elevation of SIGHT at the sensor, degrees; its unit vector in ECEF."""
+    m, host = line["sensors"][0]["ecef_from_cam"], line["host"]
+    n = math.sqrt(SIGHT[0] ** 2 + SIGHT[1] ** 2 + 1)
+    u = [(m[3 * i] * SIGHT[0] + m[3 * i + 1] * SIGHT[1] + m[3 * i + 2]) / n for i in range(3)]
+    lat, lon = math.radians(host["lat_deg"]), math.radians(host["lon_deg"])
+    east = -math.sin(lon) * u[0] + math.cos(lon) * u[1]
+    level = math.cos(lon) * u[0] + math.sin(lon) * u[1]
+    north, up = math.cos(lat) * u[2] - math.sin(lat) * level, math.sin(lat) * u[2] + math.cos(lat) * level
+    return math.degrees(math.atan2(east, north)) % 360, math.degrees(math.asin(up)), u
+
+
+def geodetic(p):
+    """Latitude, longitude in degrees, height: the place whose ecef() is p, by Newton's way on the three."""
+    at = [math.degrees(math.asin(p[2] / math.hypot(*p))), math.degrees(math.atan2(p[1], p[0])), 0.0]
+    for _ in range(20):
+        lat, lon = math.radians(at[0]), math.radians(at[1])
+        d = [a - b for a, b in zip(p, ecef(*at))]
+        up = (math.cos(lat) * math.cos(lon), math.cos(lat) * math.sin(lon), math.sin(lat))
+        north = (-math.sin(lat) * math.cos(lon), -math.sin(lat) * math.sin(lon), math.cos(lat))
+        at[2] += sum(a * b for a, b in zip(d, up))
+        at[0] += math.degrees(sum(a * b for a, b in zip(d, north)) / 6.4e6)
+        at[1] += math.degrees((-math.sin(lon) * d[0] + math.cos(lon) * d[1]) / (6.4e6 * math.cos(lat)))
+    return at
+
+
+def as_ring(line):
+    az, el, _ = sight_of(line)
+    found = [struct.pack("=5fI32s3fI2I", *box, score, track, name.encode(), 0, 0, 0, 0, 0, 0)
+             for name, box, score, track in BOXES]
+    found.append(struct.pack("=5fI32s3fI2I", 0, 0, 0, 0, 0.25, 0, b"jeep", math.radians(az), math.radians(el), RANGE_M,
+                             3, 0, 0))
+    head = struct.pack("=8sIHHiIII", b"PVDETECT", 0x01020304, 3, 80, line["frame"], 2, len(found), 0)
+    return head + b"".join(found)
+
+
+def as_json(line):
+    az, el, _ = sight_of(line)
+    found = [{"class": name, "box_px": box, "score": score, "track": track} for name, box, score, track in BOXES]
+    found.append({"class": "jeep", "score": 0.25, "los_deg": [az, el], "range_m": RANGE_M})
+    return json.dumps({"frame": line["frame"], "band": "lwir", "detections": found}).encode()
+
+
+def times_us(out):
+    """The time stamps of the packets so far, of which each frame has one: the first item."""
+    with open(out + "/lwir.klv", "rb") as file:
+        made = file.read().split(klv_decode.UAS)[1:]
+    at = [m.find(b"\2\x08") + 2 for m in made]  # behind a length of one to three octets
+    return [int.from_bytes(m[a:a + 8], "big") for m, a in zip(made, at) if 3 <= a <= 5 and len(m) >= a + 8]
+
+
+def as_klv(line, time_us):
+    """By the standard's tables: VTargets of boxes, one of a centroid and a place, their classes in an ontology series."""
+    sensor, (_, _, u) = line["sensors"][0], sight_of(line)
+    width = sensor["width_px"]
+
+    def item(tag, octets):
+        return bytes([tag, len(octets)]) + octets if len(octets) < 128 else bytes([tag, 0x82]) + len(octets).to_bytes(2, "big") + octets
+
+    def number(tag, value, octets=0):  # in as few as it needs
+        return item(tag, int(value).to_bytes(octets or max(1, (int(value).bit_length() + 7) // 8), "big"))
+
+    def series(elements):
+        return b"".join(bytes([len(e)]) + e for e in elements)
+
+    def imapb(low, high, octets, value):
+        scale = 2.0 ** (8 * octets - 1 - math.ceil(math.log2(high - low)))
+        zero = scale * low - math.floor(scale * low) if low < 0 < high else 0
+        return int(scale * (value - low) + zero).to_bytes(octets, "big")
+
+    def of_class(k):
+        return item(107, series([number(3, k)]))
+    found = []
+    for k, (_, (left, top, right, bottom), score, track) in enumerate(BOXES, 1):
+        found.append((bytes([track]) if track else bytes.fromhex("9080808000")) + number(2, top * width + left + 1) +
+                     number(3, (bottom - 1) * width + right) + number(5, 100 * score) + of_class(k))
+    column, row = image_of(sensor)
+    lat, lon, h = geodetic([p + RANGE_M * d for p, d in zip(line["host"]["ecef_m"], u)])
+    place = imapb(-90, 90, 4, lat) + imapb(-180, 180, 4, lon) + imapb(-900, 19000, 2, h)
+    found.append(bytes.fromhex("9080808002") + number(1, int(row) * width + int(column) + 1) + number(5, 25) +
+                 item(17, place) + of_class(3))
+    classes = [number(1, k) + item(3, b"urn:x") + item(4, b"urn:x:" + c) + item(6, c)
+               for k, c in enumerate((b"tank", b"truck", b"jeep"), 1)]
+    items = b"".join([number(2, time_us, 8), item(3, b"another ATR"), number(4, 6),
+                      number(5, len(found)), number(6, len(found)), number(7, line["frame"]), number(8, width),
+                      number(9, sensor["height_px"]), item(10, b"IR LWIR"), item(11, imapb(0, 180, 2, sensor["hfov_deg"])),
+                      item(12, imapb(0, 180, 2, sensor["vfov_deg"])), item(13, bytes.fromhex(MIIS)), item(101, series(found)),
+                      item(103, series(classes))])
+    octets = klv_decode.VMTI + b"\x82" + (len(items) + 4).to_bytes(2, "big") + items + b"\1\2"
+    return octets + klv_decode.checksum(octets).to_bytes(2, "big")
+
+
+def send(port, out, command):
+    """Runs a command; answers each frame once its line of truth is there, in one form or another. Its code."""
     child = subprocess.Popen(command)
-    to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    one = struct.pack("=5fI16s2I", 3, 4, 20.5, 10, 0.75, 9, b"tank", 0, 0)
-    two = struct.pack("=5fI16s2I", 1, 1, 5, 5, 0.5, 0, b"truck", 0, 0)
+    to, done = socket.socket(socket.AF_INET, socket.SOCK_DGRAM), 0
     while child.poll() is None:
-        for frame in range(40):
-            to.sendto(struct.pack("=8sIHHiIII", b"PVDETECT", 0x01020304, 1, 48, frame, 2, 2, 0) + one + two,
-                      ("127.0.0.1", int(port)))
-        time.sleep(0.03)
+        time.sleep(0.005)
+        try:
+            with open(out + "/truth.jsonl") as file:
+                lines = file.read().split("\n")[:-1]
+            times = times_us(out)
+        except OSError:
+            continue
+        lines = [json.loads(line) for line in lines[:len(times)]]
+        for line, time_us in zip(lines[done:], times[done:]):
+            made = [as_ring(line), as_json(line), as_klv(line, time_us)][line["frame"] % 3]
+            for octets in (made[:-1], made, made):  # one that is cut, one that is repeated
+                to.sendto(octets, ("127.0.0.1", int(port)))
+        done = len(lines)
     return child.returncode
 
 
+def record_of(line):
+    """What does not depend on the frame, how it came, and when."""
+    return {k: v for k, v in line.items() if k not in ("frame", "time_s", "latency_ms", "age_ms", "los_deg", "range_m", "form")}
+
+
 def atr(out, found):
-    truth = truth_lines(out)
+    truth = {line["frame"]: line for line in truth_lines(out)}
     width = truth[0]["sensors"][0]["width_px"]
     made = [p["stanag4609"] for p in packets(out + "/lwir.klv", found)]
     with_targets = [p["vmti"] for p in made if "vmti" in p]
     check("detections are in most packets: %d of %d" % (len(with_targets), len(made)), 2 * len(with_targets) > len(made))
     for v in with_targets:
-        fields, t = v["fields"], v["targets"][0]
+        fields, t = v["fields"], v["targets"]
+        column, row = image_of(truth[fields["7"]]["sensors"][0])
         check("detections: no truth", fields["3"] == "Pitviper ATR" and not any("truth" in str(o) for o in v["ontologies"]))
-        check("detections: counts", fields["5"] == fields["6"] == 2)
+        check("detections: counts", fields["5"] == fields["6"] == len(t) == 3)
         check("detections: of the frame they were found in", fields["2"] == made[fields["7"]]["2"])
         check("detections: id, box and confidence",
-              [t["id"], t["2"], t["3"], t["5"]] == [9, 4 * width + 3 + 1, 9 * width + 20 + 1, 75])
-        check("detections: classes", [o["label"] for o in v["ontologies"]] == ["tank", "truck"])
+              [t[0]["id"], t[0]["2"], t[0]["3"], t[0]["5"]] == [9, 4 * width + 3 + 1, 9 * width + 20 + 1, 75])
+        check("detections: a line of sight is its pixel, through the lens: %s" % t[2],
+              [t[2]["1"], t[2]["5"]] == [int(row) * width + int(column) + 1, 25] and "2" not in t[2])
+        check("detections: classes", [o["label"] for o in v["ontologies"]] == ["tank", "truck", "jeep"])
+    own = list(klv_decode.decode(as_klv(truth[0], 1), found))
+    check("answers: what is sent as ST 0903 is so for its readers", [p["set"] for p in own] == ["0903"] and
+          [t["id"] for t in own[0]["stanag4609"]["vmti"]["targets"]][0] == 9)
+    # the same detections in all forms are the same record
+    with open(out + "/answers.jsonl") as file:
+        lines = [json.loads(line) for line in file]
+    want = [{"band": "lwir", "answer": k + 1, "of": 3, "class": name, "box_px": box, "score": score, "track": track, "late": False}
+            for k, (name, box, score, track) in enumerate(BOXES)]
+    want.append({"band": "lwir", "answer": 3, "of": 3, "class": "jeep", "score": 0.25, "late": False})
+    del want[1]["track"]
+    check("answers: each form came: %s" % [l["form"] for l in lines], {l["form"] for l in lines} == set(FORMS))
+    for line in lines:
+        check("answers: frame %d by %s" % (line["frame"], line["form"]), line["form"] == FORMS[line["frame"] % 3])
+        check("answers: %s is the record" % line, record_of(line) == want[line["answer"] - 1])
+        check("answers: %s has its times" % line, line["age_ms"] > line["latency_ms"] > 0)
+        if line["answer"] < 3:
+            continue
+        sensor, (az, el, _) = truth[line["frame"]]["sensors"][0], sight_of(truth[line["frame"]])
+        step = 1.1 * sensor["hfov_deg"] / width if line["form"] == "klv" else 3e-5  # to a pixel's middle; a float
+        near("answers: azimuth by " + line["form"], line["los_deg"][0], az, step)
+        near("answers: elevation by " + line["form"], line["los_deg"][1], el, step)
+        near("answers: range by " + line["form"], line["range_m"], RANGE_M, 1.1 if line["form"] == "klv" else 0)
+    with open(out + "/run.json") as file:
+        counted = json.load(file)["counters"]["answers"]
+    for form in FORMS:
+        c, came = counted["forms"][form], sum(l["form"] == form and l["answer"] == 1 for l in lines)
+        cut, repeated = (c["refused"].get(why, 0) for why in ({"ring": "size", "json": "json", "klv": "local_set"}[form], "repeated"))
+        # the last frame's three may meet the end of the run
+        check("answers: counters of %s: %s" % (form, c), c["taken"] == came and 0 <= cut - came <= 1 and 0 <= came - repeated <= 1)
 
 
 # ---- on the ground --------------------------------------------------------------------------------
@@ -323,7 +477,7 @@ def ground(out, tif, crs, found):
 
 def main(arguments):
     if arguments[0] == "send":
-        return send(arguments[1], arguments[2:])
+        return send(arguments[1], arguments[2], arguments[3:])
     found = klv_decode.readers()
     checks = {"samples": samples, "pose": pose, "atr": atr, "ground": ground}
     starts = [i for i, a in enumerate(arguments) if a in checks]

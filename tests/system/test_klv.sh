@@ -19,9 +19,9 @@ replay "$tmp/demo.pcap" "$tmp/missile" --size 63x47 --rate 0.3 --samples 1 --ban
     --set publish.klv_files=true --set publish.vmti=truth
 check "a replay writes metadata" [ "$code" = 0 ]
 free_port
-python3 "$here/klv_test.py" send $port "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/atr" --size 32x24 --rate 5 \
+python3 "$here/klv_test.py" send $port "$tmp/atr" "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/atr" --size 32x24 --rate 5 \
     --from 1362 --to 1365 --speed 3 --samples 1 --bands lwir --threads 1 --no-files --set publish.klv_files=true \
-    --set publish.detections_port=$port >"$tmp/stdout" 2>"$tmp/stderr"
+    --set sensor.lens_k1=-20 --set publish.detections_port=$port >"$tmp/stdout" 2>"$tmp/stderr"
 check "a replay with a recogniser" [ $? = 0 ]
 python3 "$here/klv_test.py" pose "$tmp/missile" atr "$tmp/atr" || fail "what is in them"
 
