@@ -4,6 +4,7 @@
 samples DATA        the readers themselves, on packets that others made (folder data/klv)
 pose OUT            the chain of angles against truth.jsonl's camera, and ST 0903 against its targets
 atr OUT             a recogniser's answers, in three forms, as records and as ST 0903; sent by: klv_test.py send PORT OUT COMMAND...
+same OUT OTHER      the answers of OTHER, which are those of OUT sent by: klv_test.py again PORT OUT COMMAND...
 ground OUT TIF CRS  frame centre and corners against rays marched through the elevation file itself, from the pose that
                     is in the metadata; positions by gdaltransform (PROJ), heights by gdal_translate. The range plane too
 
@@ -316,6 +317,27 @@ def send(port, out, command):
     return child.returncode
 
 
+def again(port, out, command):
+    """Runs a command; meanwhile sends it the answers of another run, as the manual has it. Its code."""
+    with open("etc/reference/answers.md") as file:
+        code = file.read().split("```python\n")[2].split("```")[0]
+    code = code.replace("out/answers.jsonl", out + "/answers.jsonl").replace("3456", port)
+    child = subprocess.Popen(command)
+    while child.poll() is None:
+        exec(compile(code, "answers.md", "exec"), {})
+        time.sleep(0.03)
+    return child.returncode
+
+
+def same_answers(out, other):
+    """The answers of `other` are those of `out`, sent back: as many as it had time for."""
+    kept = [[{k: v for k, v in json.loads(line).items() if k not in ("latency_ms", "age_ms", "late", "form")}
+             for line in open(path + "/answers.jsonl")] for path in (out, other)]
+    check("answers sent back: %d lines, %d again" % (len(kept[0]), len(kept[1])), len(kept[1]) >= len(kept[0]) / 2 > 3)
+    check("answers sent back are as they were: %s" % [l for l in kept[1] if l not in kept[0]][:1],
+          all(line in kept[0] for line in kept[1]))
+
+
 def record_of(line):
     """What does not depend on the frame, how it came, and when."""
     return {k: v for k, v in line.items() if k not in ("frame", "time_s", "latency_ms", "age_ms", "los_deg", "range_m", "form")}
@@ -476,8 +498,11 @@ def ground(out, tif, crs, found):
 
 
 def main(arguments):
-    if arguments[0] == "send":
-        return send(arguments[1], arguments[2], arguments[3:])
+    if arguments[0] in ("send", "again"):
+        return (send if arguments[0] == "send" else again)(arguments[1], arguments[2], arguments[3:])
+    if arguments[0] == "same":
+        same_answers(arguments[1], arguments[2])
+        return 1 if failures else 0
     found = klv_decode.readers()
     checks = {"samples": samples, "pose": pose, "atr": atr, "ground": ground}
     starts = [i for i, a in enumerate(arguments) if a in checks]
