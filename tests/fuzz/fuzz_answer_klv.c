@@ -2,7 +2,7 @@
  * checksum at the end is made right, so that what is behind it is reached. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_answer.h"
 
-const int fuzz_rounds = 200000;
+const int fuzz_rounds = 100000;
 
 /* Appends octets that are written as hexadecimal digits. */
 static size_t put(uint8_t *out, size_t at, const char *digits)

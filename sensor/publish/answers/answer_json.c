@@ -112,17 +112,15 @@ static AnswerReason take_detection(AnswerDetection *out, const json_t *object, c
 }
 
 /* The frame and the band of an object, both of which it must have. */
-static AnswerReason take_frame(Answer *out, const json_t *object, const AnswerScope *scope)
+static AnswerReason take_frame(int *frame, Band *band, const json_t *object, const AnswerScope *scope)
 {
     const char *name = json_string_value(json_object_get(object, "band"));
-    int64_t     frame = -1;
-    if (!name || !integer(&frame, object, "frame", 0, INT32_MAX) || frame < 0) return ANSWER_FIELD;
-    out->numbered = true;
-    out->number_bits = UINT32_MAX;
-    out->frame = (int)frame;
+    int64_t     number = -1;
+    if (!name || !integer(&number, object, "frame", 0, INT32_MAX) || number < 0) return ANSWER_FIELD;
+    *frame = (int)number;
     for (int b = 0; b < BAND_COUNT; b++)
         if (scope->bands >> b & 1 && strcmp(name, band_name((Band)b)) == 0) {
-            out->band = (Band)b;
+            *band = (Band)b;
             return ANSWER_GOOD;
         }
     return ANSWER_BAND;
@@ -135,7 +133,7 @@ static AnswerReason take_answer(Answer *out, const json_t *object, const AnswerS
 {
     const json_t *list = json_object_get(object, "detections");
     if (!has_only(object, answer_object, COUNT(answer_object), false)) return ANSWER_FIELD;
-    AnswerReason reason = take_frame(out, object, scope);
+    AnswerReason reason = take_frame(&out->frame, &out->band, object, scope);
     if (reason == ANSWER_GOOD && json_array_size(list) > answer_detections_most) reason = ANSWER_COUNT;
     for (size_t i = 0; reason == ANSWER_GOOD && i < json_array_size(list); i++) {
         const json_t *one = json_array_get(list, i);
@@ -149,18 +147,17 @@ static AnswerReason take_answer(Answer *out, const json_t *object, const AnswerS
  * there are; -1: none has said it. */
 static AnswerReason take_line(Answer *out, int64_t *of, int number, const json_t *object, const AnswerScope *scope)
 {
-    Answer  line = *out;
+    int     frame = 0;
+    Band    band = BAND_COUNT;
     int64_t all = -1;
     if (!has_only(object, line_fields, COUNT(line_fields), true)) return ANSWER_FIELD;
-    const AnswerReason reason = take_frame(&line, object, scope);
+    const AnswerReason reason = take_frame(&frame, &band, object, scope);
     if (reason != ANSWER_GOOD) return reason;
-    if (number > 0 && (line.frame != out->frame || line.band != out->band)) return ANSWER_FIELD;
+    if (number > 0 && (frame != out->frame || band != out->band)) return ANSWER_FIELD;
     if (!integer(&all, object, "of", 0, answer_detections_most) || (number > 0 && all != *of)) return ANSWER_COUNT;
     *of = all;
-    out->numbered = true;
-    out->number_bits = line.number_bits;
-    out->frame = line.frame;
-    out->band = line.band;
+    out->frame = frame;
+    out->band = band;
     if (all == 0) { /* nothing was found: the only line, without anything of a detection */
         for (int i = 0; i < COUNT(detection_fields); i++)
             if (json_object_get(object, detection_fields[i].name)) return ANSWER_FIELD;
@@ -178,6 +175,8 @@ AnswerReason answer_read_json(Answer *out, const uint8_t *bytes, size_t size, co
     int64_t      of = -1;
     int          number = 0;
     bool         whole = false; /* an object with all of it was there */
+    out->numbered = true;
+    out->number_bits = UINT32_MAX;
     while (reason == ANSWER_GOOD) {
         while (size > 0 && is_blank(*bytes)) bytes++, size--;
         if (size == 0) break;
