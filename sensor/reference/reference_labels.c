@@ -113,11 +113,9 @@ const Reference reference_answers = {
     .topic = "answers",
     .file = "answers.jsonl",
     .title = "the answers of a recogniser: a line of JSON per detection",
-    .about =
-        "With publish.detections_port (etc/reference/answers.md). One answer counts for a frame and band, the first; "
-        "repeated ones,\n"
-        "and all that are refused, are counted in run.json: counters.answers. The lines of an answer, sent back in one datagram,\n"
-        "are that answer.",
+    .about = "With publish.detections_port (etc/reference/answers.md). The first answer to a band of a frame counts;\n"
+             "repeated ones, and all that are refused, are counted in run.json: counters.answers. The lines of an\n"
+             "answer, sent back in one datagram, are that answer.",
     .table = &answer_fields,
     .word = REFERENCE_FIELDS(words),
     .python =
