@@ -125,7 +125,7 @@ static int read_frames(PitviperMemory *m, const Options *o)
     int       result = 0;
     long      frames = 0;
     if (o->detect && m->header.detections_port == 0)
-        fprintf(stderr, "read_memory: the node takes no detections; set publish.detections_port\n");
+        fprintf(stderr, "read_memory: the node takes no answers; set publish.detections_port\n");
     while ((o->frames == 0 || frames < o->frames) && (result = pitviper_memory_wait(m, -1)) == 1) {
         if ((o->in_order ? pitviper_memory_take_next(m) : pitviper_memory_take_newest(m)) != 1) continue;
         frames++;

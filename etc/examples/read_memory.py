@@ -17,6 +17,7 @@ import argparse
 import ctypes
 import errno
 import fcntl
+import json
 import mmap
 import os
 import socket
@@ -238,11 +239,9 @@ class Ring:
         os.close(self.file)
 
 
-def send_detections(to, port, frame, band, found):
-    """found: (left, top, right, bottom, score, track, class name), at most 64, as pitviper_memory.h has them."""
-    head = struct.pack('=8sIHHiIII', b'PVDETECT', BYTE_ORDER, 2, 64, frame, band, len(found), 0)
-    body = b''.join(struct.pack('=5fI32s2I', *d[:6], d[6].encode()[:31], 0, 0) for d in found)
-    to.sendto(head + body, ('127.0.0.1', port))
+def send_answer(to, port, frame, band, detections):
+    """One datagram of JSON. A detection: class, score, box_px or los_deg (or both), track, range_m: etc/reference/answers.md."""
+    to.sendto(json.dumps({'frame': frame, 'band': band, 'detections': detections}).encode(), ('127.0.0.1', port))
 
 
 def brightest(plane):
@@ -272,7 +271,8 @@ def detect(to, ring, frame):
         done.add(p.band)
         row, column = brightest(plane)
         box = max(column - 4, 0), max(row - 4, 0), min(column + 5, p.width), min(row + 5, p.height)
-        send_detections(to, ring.header.detections_port, frame.record.frame, p.band, [(*box, 0.5, 1, 'bright')])
+        found = {'class': 'bright', 'score': 0.5, 'box_px': box, 'track': 1}
+        send_answer(to, ring.header.detections_port, frame.record.frame, p.band_name.decode(), [found])
 
 
 def main():
@@ -291,7 +291,7 @@ def main():
         sys.exit(f'read_memory.py: {reason}')
     to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     if o.detect and not ring.header.detections_port:
-        print('read_memory.py: the node takes no detections; set publish.detections_port', file=sys.stderr)
+        print('read_memory.py: the node takes no answers; set publish.detections_port', file=sys.stderr)
     count = 0
     for frame in ring.frames(o.in_order):
         show(frame)

@@ -181,19 +181,26 @@ typedef struct PitviperMemoryTarget {
 } PitviperMemoryTarget;
 
 /* ---- detections: one datagram to 127.0.0.1, port PitviperMemoryHeader.detections_port -------------- */
-/* One answer per band and frame, without detections where nothing was found. Version 1, which nodes still take, had
- * class_name[16] and so detections of 48 octets. */
+/* One answer per band and frame, without detections where nothing was found. Nodes still take version 2, which ended
+ * with reserved[2] behind the class, detections of 64 octets, and version 1, with class_name[16], of 48. Other forms:
+ * etc/reference/answers.md. */
 
 #define PITVIPER_DETECTIONS_MAGIC   "PVDETECT"
-#define PITVIPER_DETECTIONS_VERSION 2
+#define PITVIPER_DETECTIONS_VERSION 3
 enum { pitviper_detections_most = 64 };
 
+/* Flags: 0 is a box alone. */
+enum { PITVIPER_DETECTION_SIGHT = 1 /* a line of sight is given */, PITVIPER_DETECTION_NO_BOX = 2 /* and it alone */ };
+
 typedef struct PitviperDetection {
-    float    left, top, right, bottom; /*  0 px, within the image; right and bottom beyond it */
+    float    left, top, right, bottom; /*  0 px, within the image; right and bottom beyond it; without a box 0 */
     float    score;                    /* 16 0 .. 1 */
     uint32_t track;                    /* 20 the same number for the same object in later frames; 0: none */
     char     class_name[32];           /* 24 printable ASCII, then zeros; the last octet is 0 */
-    uint32_t reserved[2];              /* 56 0 */
+    float    los_az_rad, los_el_rad;   /* 56 at the sensor: from north over east, above the horizontal; else 0 */
+    float    range_m;                  /* 64 from the sensor; 0: none */
+    uint32_t flags;                    /* 68 */
+    uint32_t reserved[2];              /* 72 0 */
 } PitviperDetection;
 
 /* Only the first `count` detections are sent: PITVIPER_DETECTIONS_SIZE(count) octets. */
@@ -201,7 +208,7 @@ typedef struct PitviperDetections {
     char              magic[8];       /*  0 PITVIPER_DETECTIONS_MAGIC, without a 0 */
     uint32_t          byte_order;     /*  8 PITVIPER_MEMORY_BYTE_ORDER */
     uint16_t          version;        /* 12 PITVIPER_DETECTIONS_VERSION */
-    uint16_t          detection_size; /* 14 of one: 64 */
+    uint16_t          detection_size; /* 14 of one: 80 */
     int32_t           frame;          /* 16 PitviperMemoryRecord.frame of the frame they were found in */
     uint32_t          band;           /* 20 */
     uint32_t          count;          /* 24 */
@@ -236,7 +243,7 @@ PITVIPER_HOLDS_(target, sizeof(PitviperMemoryTarget) == 576);
 PITVIPER_AT_(PitviperMemoryTarget, box, 88);
 PITVIPER_AT_(PitviperMemoryTarget, pixels, 216);
 PITVIPER_AT_(PitviperMemoryTarget, band, 320);
-PITVIPER_HOLDS_(detection, sizeof(PitviperDetection) == 64);
+PITVIPER_HOLDS_(detection, sizeof(PitviperDetection) == 80);
 PITVIPER_AT_(PitviperDetections, detection, 32);
 
 /* The sizes of revision 0: none is smaller. */

@@ -24,10 +24,11 @@ typedef enum LatencyStage {
 } LatencyStage;
 extern const char *const latency_stage_name[LATENCY_STAGE_COUNT];
 
-/* The times of one frame; 0: there is no such time. arrived: that of the newest datagram that the frame used; fresh: no
- * earlier frame used this datagram. Only fresh frames are in the statistics, since a silent exercise is no latency. */
+/* The times of one frame; 0: there is no such time. instant: when the frame's exercise time arrived here; arrived:
+ * that of the newest datagram that the frame used; fresh: no earlier frame used this datagram. Only fresh frames are in
+ * the statistics, since a silent exercise is no latency. */
 typedef struct LatencyTimes {
-    double arrived_s, posed_s, render_s, rendered_s;
+    double instant_s, arrived_s, posed_s, render_s, rendered_s;
     bool   fresh;
 } LatencyTimes;
 

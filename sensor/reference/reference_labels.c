@@ -5,7 +5,7 @@
 #include "render/frame/planes.h"
 #include "sensor/commands/sweep/sweep.h"
 #include "sensor/publish/consumers/consume_pairs.h"
-#include "sensor/publish/memory/detections.h"
+#include "sensor/publish/answers/answers.h"
 #include "sensor/score/score_fields.h"
 
 static const ReferenceWord words[] = {REFERENCE_WORD_BAND};
@@ -114,10 +114,9 @@ const Reference reference_answers = {
     .topic = "answers",
     .file = "answers.jsonl",
     .title = "the answers of a recogniser: a line of JSON per detection",
-    .about =
-        "With publish.detections_port (etc/reference/memory.md). One answer counts for a frame and band, the first; "
-        "repeated ones,\n"
-        "and all that are refused, are counted in run.json: counters.answers.",
+    .about = "With publish.detections_port (etc/reference/answers.md). The first answer to a band of a frame counts;\n"
+             "repeated ones, and all that are refused, are counted in run.json: counters.answers. The lines of an\n"
+             "answer, sent back in one datagram, are that answer.",
     .table = &answer_fields,
     .word = REFERENCE_FIELDS(words),
     .python =
@@ -126,7 +125,8 @@ const Reference reference_answers = {
         "    answer = json.loads(line)\n"
         "    if answer['of'] == 0:               # nothing was found\n"
         "        continue\n"
-        "    print(answer['frame'], answer['band'], answer['class'], answer['box_px'], answer['score'], answer['latency_ms'])\n",
+        "    where = answer.get('box_px') or answer['los_deg']\n"
+        "    print(answer['frame'], answer['band'], answer['class'], where, answer.get('score'), answer['latency_ms'])\n",
 };
 
 static const ReferenceWord score_words[] = {

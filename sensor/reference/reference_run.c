@@ -15,9 +15,11 @@ static const char *stage(int i) { return i < session_stages ? session_stage_name
 /* Gives the reasons that are faults. */
 static const char *answer_fault(int i)
 {
-    const int reason = i + 1 + (i + 1 >= DETECTIONS_LATE);
-    return reason < DETECTIONS_REASONS ? detections_reason_name[reason] : NULL;
+    const int reason = i + 1 + (i + 1 >= ANSWER_LATE);
+    return reason < ANSWER_REASONS ? answer_reason_name[reason] : NULL;
 }
+
+static const char *form(int i) { return i < ANSWER_FORMS ? answer_form_name[i] : NULL; }
 
 static const char *latency(int i) { return i < LATENCY_STAGE_COUNT ? latency_stage_name[i] : NULL; }
 
@@ -27,6 +29,7 @@ static const ReferenceWord words[] = {
     {"LIBRARY", "embree, openimageio, geographiclib, erfa, fftw, libc, compiler", NULL, NULL},
     {"TYPE", "the PDU type's number: 1 Entity State, 2 Fire, 3 Detonation ...", NULL, NULL},
     {"REASON", "one of", drop, NULL},
+    {"FORM", "one of", form, NULL},
     {"FAULT", "one of", answer_fault, NULL},
     {"SKIP", "one of", skip, what_skip},
     {"KIND", "one of", kind, NULL},

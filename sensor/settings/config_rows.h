@@ -230,7 +230,8 @@ enum { config_paths_size = 4096 };
     ROW(INT, publish., memory_slots, 4, 2, 64, "", \
         "frames that the ring holds; a reader slower than that loses frames") \
     ROW(INT, publish., detections_port, 0, 0, 65535, "", \
-        "UDP port on loopback that receives a recogniser's detections, for answers.jsonl and metadata; 0: none")
+        "UDP port on loopback that receives a recogniser's answers (PVDETECT, JSON or MISB ST 0903), for answers.jsonl " \
+        "and metadata; 0: none")
 
 #define CONFIG_RECORD(ROW) \
     ROW(PATH, record., path, "", 1024, "pcapng file to which `run` records all received datagrams; empty: none")

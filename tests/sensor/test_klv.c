@@ -416,13 +416,16 @@ static void targets_of_truth(void **state)
 static void targets_of_a_recogniser(void **state)
 {
     (void)state;
-    static KlvTarget    kept[klv_most_targets];
-    static DetectionSet set = {.frame = 250, .unix_s = 1749999999.5, .count = 2};
-    KlvTargets          out;
-    set.detection[0] = (PitviperDetection){10.2f, 20, 29.5f, 23.001f, 0.25f, 7, "tank", {0}};
-    set.detection[1] = (PitviperDetection){1, 2, 3, 4, 1, 0, "", {0}};
-    klv_of_detections(&out, kept, &set);
-    CHECK(!out.truth && out.count == 2 && out.target == kept && kept[0].id == 7 && kept[1].id == 0x100000001);
+    static KlvTarget kept[klv_most_targets];
+    static Answer    answer = {.frame = 250, .unix_s = 1749999999.5, .count = 4};
+    KlvTargets       out;
+    answer.detection[0] = (AnswerDetection){{10.2, 20, 29.5, 23.001}, .score = 0.25, .track = 7, .class_name = "tank"};
+    answer.detection[1] = (AnswerDetection){{1, 2, 3, 4}, .score = 1};
+    /* lines of sight alone: through the third pixel of the second row, and beside the image */
+    answer.detection[2] = (AnswerDetection){{NAN, NAN, NAN, NAN}, .score = 0.5, .point_px = {2.99, 1.01}};
+    answer.detection[3] = (AnswerDetection){{NAN, NAN, NAN, NAN}, .score = 0.5, .point_px = {-0.01, 1.01}};
+    klv_of_answer(&out, kept, &answer);
+    CHECK(!out.truth && out.count == 4 && out.target == kept && kept[0].id == 7 && kept[1].id == 0x100000001);
     assert_memory_equal(kept[0].box, ((const int[4]){10, 20, 30, 24}), sizeof kept[0].box);
     assert_memory_equal(kept[1].box, ((const int[4]){1, 2, 3, 4}), sizeof kept[1].box);
     CHECK_NEAR(kept[0].confidence, 0.25, 0);
@@ -431,7 +434,14 @@ static void targets_of_a_recogniser(void **state)
     const Value vmti = tag_of(74);
     CHECK(number(tag_of(2), false) == 1750000000250000 && number(find(vmti, 2), false) == 1749999999500000);
     CHECK(number(find(vmti, 7), false) == 250);
-    CHECK(number(find(vmti, 5), false) == 2 && number(find(vmti, 6), false) == 2);
+    CHECK(number(find(vmti, 5), false) == 4 && number(find(vmti, 6), false) == 4);
+    Value series = find(vmti, 101);
+    for (int k = 0; k < 4; k++) { /* after length and id, of one octet for the track and five for the others */
+        const Value pack = {series.at + (k == 0 ? 2 : 6), series.at[0] - (k == 0 ? 1 : 5)};
+        CHECK((find(pack, 1).at != NULL) == (k < 3) && (find(pack, 2).at != NULL) == (k < 2));
+        if (k == 2) CHECK(number(find(pack, 1), false) == lab.request.view.width + 3);
+        series.at += 1 + series.at[0];
+    }
 }
 
 int main(void)

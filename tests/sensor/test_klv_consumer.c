@@ -2,6 +2,7 @@
 #include "tests/sensor/klv_lab.h"
 
 #include <netinet/in.h>
+#include <pitviper_memory.h>
 #include <sys/socket.h>
 
 static size_t read_file(uint8_t *octets, size_t most, const char *folder, const char *name)
@@ -24,7 +25,7 @@ static void packets_of_frames_in_files(void **state)
     char           folder[] = "/tmp/pitviper-klv-XXXXXX";
     Config         config = config_default();
     TargetRecord   target = {.id = {1, 2, 3}, .pixels = 40, .box = {10, 20, 30, 24}, .class_number = 1};
-    KlvDetections  found = {.from = NULL};
+    KlvAnswers     found = {.from = NULL};
     static uint8_t packet[klv_most_octets];
     CHECK(mkdtemp(folder));
     for (int vmti = 0; vmti < 3; vmti++) {
@@ -91,7 +92,7 @@ static void packets_of_frames_in_files(void **state)
 static void answers_last_for_a_second(void **state)
 {
     (void)state;
-    Detections        *from = NULL;
+    Answers           *from = NULL;
     AnswerCounters     count = {.lines = 0};
     int                port = 20000 + (int)getpid() % 20000;
     PitviperDetections answer = {.byte_order = PITVIPER_MEMORY_BYTE_ORDER,
@@ -101,13 +102,16 @@ static void answers_last_for_a_second(void **state)
                                  .band = BAND_LWIR,
                                  .count = 1};
     memcpy(answer.magic, PITVIPER_DETECTIONS_MAGIC, sizeof answer.magic);
-    answer.detection[0] = (PitviperDetection){1, 2, 11, 12, 0.5f, 9, "tank", {0}};
+    answer.detection[0] = (PitviperDetection){
+        .left = 1, .top = 2, .right = 11, .bottom = 12, .score = 0.5f, .track = 9, .class_name = "tank"};
     log_set_sink(check_listen, NULL);
-    for (int i = 0; i < 50 && !from; i++)
-        detections_open(&from, &(DetectionsOf){.port = ++port, .bands = 1 << BAND_LWIR, .width = 640, .height = 480});
+    for (int i = 0; i < 50 && !from; i++) answers_open(&from, &(AnswersOf){++port, {1 << BAND_LWIR, 640, 480}});
     CHECK(from);
-    detections_frame(from, 6, 3, 1000.5, 0);
-    KlvDetections found = {.from = from};
+    AnswerFrame six = {.number = 6, .time_s = 3, .unix_s = 1000.5};
+    scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
+    answer_camera(&six.camera, &lab.record);
+    answers_frame(from, &six);
+    KlvAnswers found = {.from = from};
     for (int answered = 0; answered < 2; answered++) {
         static const struct {
             double          unix_s;
@@ -135,14 +139,14 @@ static void answers_last_for_a_second(void **state)
         const struct sockaddr_in node = {
             .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
         CHECK(sendto(s, &answer, PITVIPER_DETECTIONS_SIZE(1), 0, (const struct sockaddr *)&node, sizeof node) > 0);
-        for (int i = 0; i < 1000000 && count.datagrams[DETECTIONS_GOOD] == 0; i++) {
+        for (int i = 0; i < 1000000 && answer_datagrams(&count, ANSWER_GOOD) == 0; i++) {
             usleep(100);
-            detections_counters(from, &count);
+            answers_counters(from, &count);
         }
-        CHECK(count.datagrams[DETECTIONS_GOOD] == 1);
+        CHECK(answer_datagrams(&count, ANSWER_GOOD) == 1);
         close(s);
     }
-    detections_close(from, NULL);
+    answers_close(from, NULL);
     log_set_sink(NULL, NULL);
 }
 

@@ -3,15 +3,17 @@
 
 samples DATA        the readers themselves, on packets that others made (folder data/klv)
 pose OUT            the chain of angles against truth.jsonl's camera, and ST 0903 against its targets
-atr OUT             a recogniser's detections as ST 0903; sent meanwhile by: klv_test.py send PORT COMMAND...
+atr OUT             a recogniser's answers, in three forms, as records and as ST 0903; sent by: klv_test.py send PORT OUT COMMAND...
+same OUT OTHER      the answers of OTHER, which are those of OUT sent by: klv_test.py again PORT OUT COMMAND...
 ground OUT TIF CRS  frame centre and corners against rays marched through the elevation file itself, from the pose that
                     is in the metadata; positions by gdaltransform (PROJ), heights by gdal_translate. The range plane too
 
 Prints what failed; exit 0: nothing.
 """
-import json, math, os, socket, struct, subprocess, sys, tempfile, time
+import json, math, os, socket, subprocess, sys, tempfile, time
 
 import klv_decode
+from klv_answers import BOXES, FORMS, RANGE_M, as_json, as_klv, as_ring, ecef, image_of, sight_of, times_us
 
 failures = []
 
@@ -70,14 +72,6 @@ def matrix(yaw, pitch, roll):
 
 def times(a, b):
     return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
-
-
-def ecef(lat, lon, h):
-    a, f = 6378137.0, 1 / 298.257223563
-    e2, s, c = f * (2 - f), math.sin(math.radians(lat)), math.cos(math.radians(lat))
-    n = a / math.sqrt(1 - e2 * s * s)
-    east = math.radians(lon)
-    return [(n + h) * c * math.cos(east), (n + h) * c * math.sin(east), (n * (1 - e2) + h) * s]
 
 
 def camera(k):
@@ -183,36 +177,107 @@ def both(a, b):
           [[t[n] for n in names] for t in a["targets"]] == [[t["id"], t.get("2"), t.get("3")] for t in b["targets"]])
 
 
-# ---- a recogniser's detections --------------------------------------------------------------------------
+# ---- a recogniser's answers -------------------------------------------------------------------------------
 
-def send(port, command):
-    """Runs a command; meanwhile two detections in every frame, as etc/include/pitviper_memory.h has them. Its code."""
+def send(port, out, command):
+    """Runs a command; answers each frame once its line of truth is there, in one form or another. Its code."""
     child = subprocess.Popen(command)
-    to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    one = struct.pack("=5fI16s2I", 3, 4, 20.5, 10, 0.75, 9, b"tank", 0, 0)
-    two = struct.pack("=5fI16s2I", 1, 1, 5, 5, 0.5, 0, b"truck", 0, 0)
+    to, done = socket.socket(socket.AF_INET, socket.SOCK_DGRAM), 0
     while child.poll() is None:
-        for frame in range(40):
-            to.sendto(struct.pack("=8sIHHiIII", b"PVDETECT", 0x01020304, 1, 48, frame, 2, 2, 0) + one + two,
-                      ("127.0.0.1", int(port)))
-        time.sleep(0.03)
+        time.sleep(0.005)
+        try:
+            with open(out + "/truth.jsonl") as file:
+                lines = file.read().split("\n")[:-1]
+            times = times_us(out)
+        except OSError:
+            continue
+        lines = [json.loads(line) for line in lines[:len(times)]]
+        for line, time_us in zip(lines[done:], times[done:]):
+            made = [as_ring(line), as_json(line), as_klv(line, time_us)][line["frame"] % 3]
+            for octets in (made[:-1], made, made):  # one that is cut, one that is repeated
+                to.sendto(octets, ("127.0.0.1", int(port)))
+        done = len(lines)
     return child.returncode
 
 
+def again(port, out, command):
+    """Runs a command; meanwhile sends it the answers of another run, as the manual has it. Its code."""
+    with open("etc/reference/answers.md") as file:
+        one, lines = (text.split("```")[0] for text in file.read().split("```python\n")[1:])
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sink:
+        sink.bind(("127.0.0.1", 0))
+        sink.settimeout(60)
+        exec(one.replace("3456", str(sink.getsockname()[1])), {})
+        said = json.loads(sink.recv(65536))
+        check("the manual's answer", said["frame"] == 12 and said["detections"][0]["box_px"] == [288, 214, 436, 272])
+    lines = lines.replace("out/answers.jsonl", out + "/answers.jsonl").replace("3456", port)
+    child = subprocess.Popen(command)
+    while child.poll() is None:
+        exec(lines, {})
+        time.sleep(0.03)
+    return child.returncode or len(failures)
+
+
+def same_answers(out, other):
+    """The answers of `other` are those of `out`, sent back: as many as it had time for."""
+    kept = [[{k: v for k, v in json.loads(line).items() if k not in ("latency_ms", "age_ms", "late", "form")}
+             for line in open(path + "/answers.jsonl")] for path in (out, other)]
+    check("answers sent back: %d lines, %d again" % (len(kept[0]), len(kept[1])), len(kept[1]) >= len(kept[0]) / 2 > 3)
+    check("answers sent back are as they were: %s" % [l for l in kept[1] if l not in kept[0]][:1],
+          all(line in kept[0] for line in kept[1]))
+
+
+def record_of(line):
+    """What does not depend on the frame, how it came, and when."""
+    return {k: v for k, v in line.items() if k not in ("frame", "time_s", "latency_ms", "age_ms", "los_deg", "range_m", "form")}
+
+
 def atr(out, found):
-    truth = truth_lines(out)
+    truth = {line["frame"]: line for line in truth_lines(out)}
     width = truth[0]["sensors"][0]["width_px"]
     made = [p["stanag4609"] for p in packets(out + "/lwir.klv", found)]
     with_targets = [p["vmti"] for p in made if "vmti" in p]
     check("detections are in most packets: %d of %d" % (len(with_targets), len(made)), 2 * len(with_targets) > len(made))
     for v in with_targets:
-        fields, t = v["fields"], v["targets"][0]
+        fields, t = v["fields"], v["targets"]
+        column, row = image_of(truth[fields["7"]]["sensors"][0])
         check("detections: no truth", fields["3"] == "Pitviper ATR" and not any("truth" in str(o) for o in v["ontologies"]))
-        check("detections: counts", fields["5"] == fields["6"] == 2)
+        check("detections: counts", fields["5"] == fields["6"] == len(t) == 3)
         check("detections: of the frame they were found in", fields["2"] == made[fields["7"]]["2"])
         check("detections: id, box and confidence",
-              [t["id"], t["2"], t["3"], t["5"]] == [9, 4 * width + 3 + 1, 9 * width + 20 + 1, 75])
-        check("detections: classes", [o["label"] for o in v["ontologies"]] == ["tank", "truck"])
+              [t[0]["id"], t[0]["2"], t[0]["3"], t[0]["5"]] == [9, 4 * width + 3 + 1, 9 * width + 20 + 1, 75])
+        check("detections: a line of sight is its pixel, through the lens: %s" % t[2],
+              [t[2]["1"], t[2]["5"]] == [int(row) * width + int(column) + 1, 25] and "2" not in t[2])
+        check("detections: classes", [o["label"] for o in v["ontologies"]] == ["tank", "truck", "jeep"])
+    own = list(klv_decode.decode(as_klv(truth[0], 1), found))
+    check("answers: what is sent as ST 0903 is so for its readers", [p["set"] for p in own] == ["0903"] and
+          [t["id"] for t in own[0]["stanag4609"]["vmti"]["targets"]][0] == 9)
+    # the same detections in all forms are the same record
+    with open(out + "/answers.jsonl") as file:
+        lines = [json.loads(line) for line in file]
+    want = [{"band": "lwir", "answer": k + 1, "of": 3, "class": name, "box_px": box, "score": score, "track": track, "late": False}
+            for k, (name, box, score, track) in enumerate(BOXES)]
+    want.append({"band": "lwir", "answer": 3, "of": 3, "class": "jeep", "score": 0.25, "late": False})
+    del want[1]["track"]
+    check("answers: each form came: %s" % [l["form"] for l in lines], {l["form"] for l in lines} == set(FORMS))
+    for line in lines:
+        check("answers: frame %d by %s" % (line["frame"], line["form"]), line["form"] == FORMS[line["frame"] % 3])
+        check("answers: %s is the record" % line, record_of(line) == want[line["answer"] - 1])
+        check("answers: %s has its times" % line, line["age_ms"] > line["latency_ms"] > 0)
+        if line["answer"] < 3:
+            continue
+        sensor, (az, el, _) = truth[line["frame"]]["sensors"][0], sight_of(truth[line["frame"]])
+        step = 1.1 * sensor["hfov_deg"] / width if line["form"] == "klv" else 3e-5  # to a pixel's middle; a float
+        near("answers: azimuth by " + line["form"], line["los_deg"][0], az, step)
+        near("answers: elevation by " + line["form"], line["los_deg"][1], el, step)
+        near("answers: range by " + line["form"], line["range_m"], RANGE_M, 1.1 if line["form"] == "klv" else 0)
+    with open(out + "/run.json") as file:
+        counted = json.load(file)["counters"]["answers"]
+    for form in FORMS:
+        c, came = counted["forms"][form], sum(l["form"] == form and l["answer"] == 1 for l in lines)
+        cut, repeated = (c["refused"].get(why, 0) for why in ({"ring": "size", "json": "json", "klv": "local_set"}[form], "repeated"))
+        # the last frame's three may meet the end of the run
+        check("answers: counters of %s: %s" % (form, c), c["taken"] == came and 0 <= cut - came <= 1 and 0 <= came - repeated <= 1)
 
 
 # ---- on the ground --------------------------------------------------------------------------------
@@ -322,8 +387,11 @@ def ground(out, tif, crs, found):
 
 
 def main(arguments):
-    if arguments[0] == "send":
-        return send(arguments[1], arguments[2:])
+    if arguments[0] in ("send", "again"):
+        return (send if arguments[0] == "send" else again)(arguments[1], arguments[2], arguments[3:])
+    if arguments[0] == "same":
+        same_answers(arguments[1], arguments[2])
+        return 1 if failures else 0
     found = klv_decode.readers()
     checks = {"samples": samples, "pose": pose, "atr": atr, "ground": ground}
     starts = [i for i, a in enumerate(arguments) if a in checks]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Metadata packets as readers that are not ours see them (klv_decode.py): any frame record gives a packet that they
-# accept; pose and targets are those of truth.jsonl. Over real ground: test_klv_ground.sh. labels: small
+# accept; pose and targets are those of truth.jsonl; answers of a recogniser, in three forms. Over real ground: test_klv_ground.sh. labels: small
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 here=$(dirname "$0")
@@ -18,12 +18,17 @@ exercise demo "$tmp/demo.pcap"
 replay "$tmp/demo.pcap" "$tmp/missile" --size 63x47 --rate 0.3 --samples 1 --bands lwir --no-files \
     --set publish.klv_files=true --set publish.vmti=truth
 check "a replay writes metadata" [ "$code" = 0 ]
-free_port
-python3 "$here/klv_test.py" send $port "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/atr" --size 32x24 --rate 5 \
-    --from 1362 --to 1365 --speed 3 --samples 1 --bands lwir --threads 1 --no-files --set publish.klv_files=true \
-    --set publish.detections_port=$port >"$tmp/stdout" 2>"$tmp/stderr"
-check "a replay with a recogniser" [ $? = 0 ]
+answered() { # answered VERB FROM OUT: a replay with a recogniser, which answers as that verb has it
+    free_port
+    python3 "$here/klv_test.py" "$1" $port "$tmp/$2" "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/$3" --size 32x24 --rate 5 \
+        --from 1362 --to 1365 --speed 3 --samples 1 --bands lwir --threads 1 --no-files --set publish.klv_files=true \
+        --set sensor.lens_k1=-20 --set publish.detections_port=$port >"$tmp/stdout" 2>"$tmp/stderr"
+    check "a replay with a recogniser: $1" [ $? = 0 ]
+}
+answered send atr atr
 python3 "$here/klv_test.py" pose "$tmp/missile" atr "$tmp/atr" || fail "what is in them"
+answered again atr other
+python3 "$here/klv_test.py" same "$tmp/atr" "$tmp/other" || fail "answers sent back"
 
 # twins: truth that says something else of the pose, the field of view, a box, a distance
 cp -r "$tmp/missile" "$tmp/spoilt"

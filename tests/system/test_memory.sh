@@ -77,10 +77,10 @@ check "targets have the boxes of the truth" eval \
 check "both readers say the same of targets" cmp -s <(grep -oE '  [a-z_]+ [0-9:]+ box .*' "$tmp/c.said") \
     <(grep -oE '  [a-z_]+ [0-9:]+ box .*' "$tmp/python.said")
 check "the reader's detections are taken" eval \
-    'taken=$(sed -nE "s/^detections: ([0-9]+) datagrams taken$/\1/p" "$tmp/taken.said"); [ "${taken:-0}" -ge 1 ] && [ "$taken" -le "$frames" ]'
-taken=$(sed -nE "s/^detections: ([0-9]+) datagrams taken$/\1/p" "$tmp/taken.said")
+    'taken=$(sed -nE "s/^answers: ([0-9]+) datagrams taken$/\1/p" "$tmp/taken.said"); [ "${taken:-0}" -ge 1 ] && [ "$taken" -le "$frames" ]'
+taken=$(sed -nE "s/^answers: ([0-9]+) datagrams taken$/\1/p" "$tmp/taken.said")
 check "and each is a line of answers.jsonl, with its frame, class and latency" eval \
-    '[ "$(grep -cE "^\{\"frame\":[0-9]+,\"band\":\"lwir\",.*\"class\":\"bright\",.*\"latency_ms\":[0-9.]+,\"late\":false\}$" "$tmp/taken/answers.jsonl")" = "$taken" ]'
+    '[ "$(grep -cE "^\{\"frame\":[0-9]+,\"band\":\"lwir\",.*\"class\":\"bright\",.*\"latency_ms\":[0-9.]+,\"age_ms\":[0-9.]+,\"late\":false,\"form\":\"ring\"\}$" "$tmp/taken/answers.jsonl")" = "$taken" ]'
 check "run.json says that a recogniser was attached" eval 'grep -q "\"memory\": \"$name\"" "$tmp/taken/run.json" &&
     grep -q "\"detections_port\": $port" "$tmp/taken/run.json" && grep -q "\"lines\": $taken" "$tmp/taken/run.json"'
 check "and nothing where there was none" not grep -qE '"(memory|detections_port|answers)"' "$tmp/plain/run.json"
@@ -111,7 +111,7 @@ wait "$node"
 check "a node with raw counts ends well" [ $? = 0 ]
 check "the dead node's ring was replaced, and it says so" grep -q "memory: replaced '$name', left behind by process" "$tmp/counts.said"
 for who in c python; do check "its reader $who ends with it" ended_well "$who"; done
-check "detections from Python are taken" grep -qE "^detections: [1-3] datagrams taken$" "$tmp/counts.said"
+check "detections from Python are taken" grep -qE "^answers: [1-3] datagrams taken$" "$tmp/counts.said"
 check "with their answers" eval '[ "$(grep -c "\"class\":\"hot\"" "$tmp/counts/answers.jsonl")" -ge 1 ]'
 check "raw counts are those of the files" eval '"$build/tests/memory_planes" "$tmp/counts" "$tmp/raw_c" >/dev/null'
 check "nothing is left in /dev/shm" [ -z "$(find /dev/shm -name "*$name*")" ]

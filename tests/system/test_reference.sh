@@ -31,13 +31,40 @@ printf 'x_m,y_m,z_m,hh_dbsm,vv_dbsm\n0,0,-1,20,20\n' >"$tmp/point.csv"
 printf 'entity,signature\n*,point.csv\n' >"$tmp/given.csv"
 # a longer wave and fewer pulses, of which fewer rays and samples are traced
 sed 's/^search_ku,lfm,16.5,20,512,128,/search_ku,lfm,12.5,20,128,32,/' etc/radars.csv >"$tmp/radars.csv"
+# a recogniser that answers, before there is a frame and after, in each form: nothing found, a box, a line of sight
+free_port
+answers_port=$port
+free_port
+live_answers_port=$port
+python3 -u - "$tmp/sensor/truth.jsonl" $answers_port $live_answers_port <<'PY' &
+import json, socket, struct, sys, time
+to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+def ring(frame, band, boxes):
+    return struct.pack("=8sIHHiIII", b"PVDETECT", 0x01020304, 2, 64, frame, band, len(boxes), 0) + b"".join(
+        struct.pack("=5fI32s2I", *box, 0.75, 9, b"surveillance_aircraft", 0, 0) for box in boxes)
+def klv(frame, sensor):
+    items = bytes([7, 2, frame >> 8, frame & 255, 10, len(sensor)]) + sensor
+    octets = bytes.fromhex("060E2B34020B01010E01030306000000") + bytes([len(items) + 4]) + items + b"\1\2"
+    return octets + (sum(o << 8 * ((i + 1) % 2) for i, o in enumerate(octets)) & 0xFFFF).to_bytes(2, "big")
+def newest(path):  # of a live node: frames that it had no time for have numbers, too
+    try: return [json.loads(open(path).read().splitlines()[-1])["frame"]]
+    except (OSError, IndexError, ValueError): return []
+while True:
+    for frame in [*range(40), *newest(sys.argv[1])]:
+        lwir = {"frame": frame, "band": "lwir", "detections": [{"class": "tank", "los_deg": [12.5, -3], "range_m": 900}]}
+        for octets in ring(frame, 0, []), ring(frame, 1, [(3, 4, 20.5, 10)]), json.dumps(lwir).encode(), klv(frame, b"RADAR"):
+            for port in sys.argv[2:]: to.sendto(octets, ("127.0.0.1", int(port)))
+    time.sleep(0.005)
+PY
+answers=$!
+senders+=($answers)
 # two live nodes, each with an exercise of its own, which send what they see; one radar waits for its signatures, the other
 # has a point for every entity
 for kind in truth sensor; do
     free_port
     radar=(--set radar.table="$tmp/radars.csv" --set radar.preset=search_ku --set radar.ground=false)
-    [ $kind = truth ] || radar+=(--set radar.given="$tmp/given.csv")
-    node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 2 --no-png --bands lwir,radar --threads 1 \
+    [ $kind = truth ] || radar+=(--set radar.given="$tmp/given.csv" --set publish.detections_port=$live_answers_port)
+    node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 3 --no-png --bands lwir,radar --threads 1 \
         "${stream[@]}" "${radar[@]}" --latest \
         --set publish.files=false --set publish.dis=$kind --set exercise.listen_s=1 --record "$tmp/$kind.pcapng"
     heard_by $kind 'listening on'
@@ -48,25 +75,11 @@ done
 printf 'entity,signature\ntank,point.csv\n1:3001:22,point.csv\n' >"$tmp/but_one.csv"
 exercise demo "$tmp/demo.pcap"
 small=(--size 32x24 --rate 1 --threads 1)
-# a recogniser that answers, before there is a frame and after: a detection in one frame of two, else none
-free_port
-python3 -u - $port <<'PY' &
-import socket, struct, sys, time
-to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-while True:
-    for frame in range(40):
-        for band in range(4):
-            one = struct.pack("=5fI32s2I", 3, 4, 20.5, 10, 0.75, 9, b"surveillance_aircraft", 0, 0) * (band % 2)
-            to.sendto(struct.pack("=8sIHHiIII", b"PVDETECT", 0x01020304, 2, 64, frame, band, band % 2, 0) + one, ("127.0.0.1", int(sys.argv[1])))
-    time.sleep(0.003)
-PY
-answers=$!
-run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --memory "pitviper-reference-$$" --set publish.detections_port=$port --from 1366 --to 1366 --pairs target --coco \
+run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --memory "pitviper-reference-$$" --set publish.detections_port=$answers_port --from 1366 --to 1366 --pairs target --coco \
     --set sensor.preset=staring_lwir,staring_mwir,tv --set sensor.lens_k1=-0.1 --set sensor.lateral_r=0.001 \
     --set radar.table="$tmp/radars.csv" --set radar.preset=search_ku --set radar.scan_deg=4 \
     --set radar.given="$tmp/but_one.csv"
 check "all products" [ $code = 0 ] || cat "$tmp/stderr"
-kill $answers
 cat >"$tmp/two.yaml" <<'Y'
 duration_s: 8
 vehicles:

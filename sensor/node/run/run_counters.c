@@ -37,12 +37,18 @@ static const void *rated(const void *of)
     return live->rate_hz > 0 ? live : NULL;
 }
 
+/* of: datagrams of one form by reason. */
 static const void *next_fault(FieldAt *at, int i)
 {
+    const uint64_t *datagrams = at->of;
+    if (i == ANSWER_REASONS) return NULL;
+    return field_keyed(at, i == ANSWER_GOOD || i == ANSWER_LATE ? "" : answer_reason_name[i], &datagrams[i]);
+}
+
+static const void *next_form(FieldAt *at, int i)
+{
     const AnswerCounters *c = at->of;
-    if (i == DETECTIONS_REASONS) return NULL;
-    return field_keyed(at, i == DETECTIONS_GOOD || i == DETECTIONS_LATE ? "" : detections_reason_name[i],
-                       &c->datagrams[i]);
+    return i < ANSWER_FORMS ? field_keyed(at, answer_form_name[i], c->datagrams[i]) : NULL;
 }
 
 static const void *next_skip(FieldAt *at, int i)
@@ -106,14 +112,23 @@ static json_t *answers_received(FieldAt *at)
 {
     const AnswerCounters *c = at->of;
     uint64_t              received = c->lost_kernel;
-    for (int i = 0; i < DETECTIONS_REASONS; i++) received += c->datagrams[i];
+    for (int i = 0; i < ANSWER_REASONS; i++) received += answer_datagrams(c, (AnswerReason)i);
     return count_of(received);
 }
 
 static json_t *answers_taken(FieldAt *at)
 {
     const AnswerCounters *c = at->of;
-    return count_of(c->datagrams[DETECTIONS_GOOD] + c->datagrams[DETECTIONS_LATE]);
+    return count_of(answer_datagrams(c, ANSWER_GOOD) + answer_datagrams(c, ANSWER_LATE));
+}
+
+static json_t *answers_late(FieldAt *at) { return count_of(answer_datagrams(at->of, ANSWER_LATE)); }
+
+/* of: datagrams of one form by reason. */
+static json_t *taken_in_form(FieldAt *at)
+{
+    const uint64_t *datagrams = at->of;
+    return count_of(datagrams[ANSWER_GOOD] + datagrams[ANSWER_LATE]);
 }
 
 /* ---- the fields ---------------------------------------------------------------------------------- */
@@ -167,12 +182,21 @@ static const Field fault_rows[] = {
      .unless_0 = true},
 };
 
+static const Field form_rows[] = {
+    {"taken", "", "", "", "answers in answers.jsonl", FIELD_GET("integer", taken_in_form)},
+    {"refused", "", "", "", "by reason", FIELD_OBJECT(fault_rows)},
+};
+
+static const Field forms_rows[] = {
+    {"FORM", "", "", "", "answers that came so", .item = next_form, FIELD_OBJECT(form_rows)},
+};
+
 static const Field answer_rows[] = {
     {"datagrams", "", "", "", "all that arrived: taken, refused or lost", FIELD_GET("integer", answers_received)},
     {"taken", "", "", "", "answers in answers.jsonl", FIELD_GET("integer", answers_taken)},
     {"late", "", "", "", "of these, received after that to a newer frame: not in metadata",
-     OF_ANSWERS(datagrams[DETECTIONS_LATE])},
-    {"refused", "", "", "", "by reason", FIELD_OBJECT(fault_rows)},
+     FIELD_GET("integer", answers_late)},
+    {"forms", "", "", "", "those that were read, by form", FIELD_OBJECT(forms_rows)},
     {"lost_kernel", "", "", "", "lost in the kernel, since they came too fast", OF_ANSWERS(lost_kernel)},
     {"lines", "", "", "", "of answers.jsonl", OF_ANSWERS(lines)},
     {"lines_failed", "", "", "when 0", "that could not be written", OF_ANSWERS(lines_failed), .unless_0 = true},

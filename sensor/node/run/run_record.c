@@ -279,7 +279,7 @@ static const Field run_rows[] = {
     {"libraries", "", "", "", "libraries used in the computation", FIELD_OBJECT(library_rows), .get = libraries},
     {"memory", "", "", "without publish.memory", "name of the ring of frames in /dev/shm",
      FIELD_MEMBER(RunRecord, memory)},
-    {"detections_port", "", "", "without publish.detections_port", "UDP port that received a recogniser's detections",
+    {"detections_port", "", "", "without publish.detections_port", "UDP port that received a recogniser's answers",
      IN_RUN(options.config.publish.detections_port), .unless_0 = true},
     {"hosts", "", "site:application:entity, or `observer`", "",
      "which entities carried the sensor, one after the other", FIELD_GET("list of strings", hosts)},

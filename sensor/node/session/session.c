@@ -77,6 +77,7 @@ static void begin_latency(Session *s, Frame *f)
     const SessionShared *shared = s->shared;
     const double         fed_s = player_fed_s(s->player);
     if (!s->latency) return;
+    f->times.instant_s = shared->clock->wall_s(shared->clock, f->time_s);
     f->times.arrived_s = isfinite(fed_s) ? shared->clock->wall_s(shared->clock, fed_s) : 0;
     f->times.fresh = fed_s > s->fed_s;
     s->fed_s = fed_s;
@@ -135,7 +136,7 @@ Status session_close(Session *s, SessionResult *result)
     session_heat_report(s);
     Status status = consumers_close(&s->consumers); /* the last frames are published before */
     if (!publish_hangs()) {
-        detections_close(s->detections, &s->result.answers);
+        answers_close(s->answers, &s->result.answers);
         geoid_close(&s->geoid);
     }
     if (status == STATUS_OK) status = s->listed;

@@ -62,7 +62,7 @@ static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
                         .rate_hz = s->plan.rate_hz,
                         .patient = patient,
                         .geoid = geoid_of(s),
-                        .detections = s->detections,
+                        .answers = s->answers,
                         .sent = &s->result.sent.stream,
                         .apart = shared->live,
                         .latency = s->latency,
@@ -118,7 +118,7 @@ static Status add_klv(Consumers *list, Session *s)
                          .bands = s->shared->bands,
                          .patient = s->shared->live,
                          .geoid = geoid_of(s),
-                         .detections = s->detections};
+                         .answers = s->answers};
     Consumer      *consumer = NULL;
     const Status   status = consume_klv(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
@@ -131,17 +131,16 @@ static Status add_call(Consumers *list, const SessionShared *shared)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-/* Adds the consumers of a recogniser's detections: answers.jsonl, and metadata. */
-static Status add_detections(Consumers *list, Session *s)
+/* Adds the consumers of a recogniser's answers: answers.jsonl, and metadata. */
+static Status add_answers(Consumers *list, Session *s)
 {
     const Config *config = s->shared->config;
     Consumer     *consumer = NULL;
     if (!config->publish.detections_port) return STATUS_OK;
-    Status status = detections_open(&s->detections, &(DetectionsOf){.port = config->publish.detections_port,
-                                                                    .bands = s->shared->bands,
-                                                                    .width = config->sensor.width_px,
-                                                                    .height = config->sensor.height_px});
-    if (status == STATUS_OK) status = consume_detections(&consumer, s->detections, s->out);
+    const AnswersOf of = {config->publish.detections_port,
+                          {s->shared->bands, config->sensor.width_px, config->sensor.height_px}};
+    Status          status = answers_open(&s->answers, &of);
+    if (status == STATUS_OK) status = consume_answers(&consumer, s->answers, s->out);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -366,7 +365,7 @@ Status session_consumers(Session *s, FrameDone *done)
         if (camera->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     s->raw = raw;
     Status status = clock_on_wall(shared->clock) ? latency_create(&s->latency) : STATUS_OK;
-    if (status == STATUS_OK) status = add_detections(&s->consumers, s); /* before a frame can be answered */
+    if (status == STATUS_OK) status = add_answers(&s->consumers, s); /* before a frame can be answered */
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
     if (status == STATUS_OK && shared->dis && !shared->live) status = add_dis(&s->consumers, s); /* before the disk */

@@ -11,7 +11,7 @@
 #include "sensor/publish/consumers/consumers.h"
 #include "sensor/publish/consumers/consumer.h"
 #include "sensor/publish/klv/consume_klv.h"
-#include "sensor/publish/memory/detections.h"
+#include "sensor/publish/answers/answers.h"
 #include "sensor/instruments/camera.h"
 
 /* Of entities; without a band that shows temperatures there are none. */
@@ -58,10 +58,10 @@ struct Session {
     Instruments          instruments;
     FrameVerdicts       *verdicts; /* of the recording that is played; NULL: none */
     Consumers            consumers;
-    unsigned             raw;        /* bands of whose raw counts there are files */
-    Detections          *detections; /* received; NULL: none */
-    Geoid                geoid;      /* for metadata; n_m NULL: none */
-    unsigned             wants;      /* of all consumers */
+    unsigned             raw;     /* bands of whose raw counts there are files */
+    Answers             *answers; /* received; NULL: none */
+    Geoid                geoid;   /* for metadata; n_m NULL: none */
+    unsigned             wants;   /* of all consumers */
     FramePool           *frames;
     Latency             *latency;      /* NULL: none is kept */
     double               fed_s;        /* of the last frame in it: player_fed_s */

@@ -7,34 +7,43 @@
 #include <errno.h>
 #include <stdlib.h>
 
-/* ---- targets of the metadata, from detections or truth ------------------------------------------- */
+/* ---- targets of the metadata, from answers or truth ---------------------------------------------- */
 
-void klv_of_detections(KlvTargets *out, KlvTarget kept[klv_most_targets], const DetectionSet *set)
+static int whole(double value, double (*to)(double)) { return (int)to(clamp(value, -1, 1e6)); }
+
+void klv_of_answer(KlvTargets *out, KlvTarget kept[klv_most_targets], const Answer *answer)
 {
-    _Static_assert((int)pitviper_detections_most <= (int)klv_most_targets, "all of a datagram are in one packet");
-    *out =
-        (KlvTargets){.count = set->count, .target = kept, .elsewhen = true, .frame = set->frame, .unix_s = set->unix_s};
-    for (int k = 0; k < set->count; k++) {
-        const PitviperDetection *d = &set->detection[k];
-        kept[k] =
-            (KlvTarget){.id = d->track ? d->track : ((uint64_t)1 << 32) + (uint64_t)k,
-                        .box = {(int)floorf(d->left), (int)floorf(d->top), (int)ceilf(d->right), (int)ceilf(d->bottom)},
-                        .confidence = d->score,
-                        .pixels = NAN,
-                        .class_name = d->class_name};
+    _Static_assert((int)answer_detections_most <= (int)klv_most_targets, "all of an answer are in one packet");
+    *out = (KlvTargets){
+        .count = answer->count, .target = kept, .elsewhen = true, .frame = answer->frame, .unix_s = answer->unix_s};
+    for (int k = 0; k < answer->count; k++) {
+        const AnswerDetection *d = &answer->detection[k];
+        KlvTarget             *t = &kept[k];
+        *t = (KlvTarget){.id = d->track ? d->track : ((uint64_t)1 << 32) + (uint64_t)k,
+                         .confidence = d->score,
+                         .pixels = NAN,
+                         .located = d->located,
+                         .place = d->place,
+                         .class_name = d->class_name};
+        if (!isnan(d->box_px[0])) {
+            for (int side = 0; side < 4; side++) t->box[side] = whole(d->box_px[side], side < 2 ? floor : ceil);
+        } else if (!isnan(d->point_px[0])) {
+            t->pointed = true;
+            for (int axis = 0; axis < 2; axis++) t->point[axis] = whole(d->point_px[axis], floor);
+        }
     }
 }
 
 /* The targets of a frame; NULL: none are known. Valid until the next call. */
-static const KlvTargets *klv_detections(KlvDetections *k, const Frame *frame, Band band)
+static const KlvTargets *answered(KlvAnswers *k, const Frame *frame, Band band)
 {
-    if (!k->from || !detections_latest(k->from, band, &k->set)) return NULL;
-    if (!(fabs(frame->unix_s - k->set.unix_s) <= klv_detections_s)) return NULL;
-    klv_of_detections(&k->targets, k->kept, &k->set);
+    if (!k->from || !answers_latest(k->from, band, &k->newest)) return NULL;
+    if (!(fabs(frame->unix_s - k->newest.unix_s) <= klv_answers_s)) return NULL;
+    klv_of_answer(&k->targets, k->kept, &k->newest);
     return &k->targets;
 }
 
-size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *k, enum VmtiSource vmti, const Frame *frame, Band band,
+size_t klv_of_band(uint8_t out[klv_most_octets], KlvAnswers *k, enum VmtiSource vmti, const Frame *frame, Band band,
                    const Geoid *geoid)
 {
     const KlvSource   source = {.band = band, .geoid = geoid};
@@ -43,7 +52,7 @@ size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *k, enum VmtiSour
         klv_truth_targets(&k->targets, k->kept, &frame->record);
         targets = &k->targets;
     } else if (vmti == VMTI_ATR) {
-        targets = klv_detections(k, frame, band);
+        targets = answered(k, frame, band);
     }
     return klv_frame(out, &frame->record, frame->unix_s, &source, targets);
 }
@@ -51,11 +60,11 @@ size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *k, enum VmtiSour
 /* ---- the consumer -------------------------------------------------------------------------------- */
 
 typedef struct KlvConsumer {
-    Consumer      consumer;
-    FILE         *file[BAND_COUNT];
-    KlvFiles      of;
-    KlvDetections found;
-    RetryBackoff  patience;
+    Consumer     consumer;
+    FILE        *file[BAND_COUNT];
+    KlvFiles     of;
+    KlvAnswers   found;
+    RetryBackoff patience;
 } KlvConsumer;
 
 static Status write_packet(FILE *file, const uint8_t *octets, size_t count)
@@ -132,7 +141,7 @@ Status consume_klv(Consumer **out, const KlvFiles *of)
     if (!k) return STATUS_NO_MEMORY;
     const bool truth = of->config->publish.vmti == VMTI_TRUTH;
     k->of = *of;
-    k->found = (KlvDetections){.from = of->detections};
+    k->found = (KlvAnswers){.from = of->answers};
     k->patience = (RetryBackoff){.what = "packets in .klv files"};
     k->consumer = (Consumer){WANT_FOOTPRINT | (truth ? WANT_TARGETS : 0), put, NULL, close_klv, "klv", begin};
     *out = &k->consumer;

@@ -8,15 +8,15 @@
 #include "sensor/publish/consumers/consumer.h"
 #include "sensor/settings/config.h"
 #include "sensor/publish/klv/klv.h"
-#include "sensor/publish/memory/detections.h"
+#include "sensor/publish/answers/answers.h"
 
 typedef struct KlvFiles {
     const char   *out; /* an existing folder */
     const Config *config;
-    unsigned      bands;      /* 1 << Band */
-    bool          patient;    /* a packet that cannot be written is dropped, and counted in the log */
-    const Geoid  *geoid;      /* NULL: no heights above mean sea level */
-    Detections   *detections; /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
+    unsigned      bands;   /* 1 << Band */
+    bool          patient; /* a packet that cannot be written is dropped, and counted in the log */
+    const Geoid  *geoid;   /* NULL: no heights above mean sea level */
+    Answers      *answers; /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
 } KlvFiles;
 Status consume_klv(Consumer **out, const KlvFiles *made_of);
 
@@ -26,28 +26,28 @@ bool klv_geoid_open(Geoid *out, const Config *config);
 
 /* ---- the packet of a frame, and its targets ------------------------------------------------------ */
 
-/* Detections received from a recogniser as targets of the metadata.
+/* Detections of a recogniser's answer as targets of the metadata.
  *
- * They belong to the frame that they were found in, mostly an earlier one than that of the packet: the VMTI local set
- * has the time and the number of that frame. The newest of a band are in each packet until newer ones are received, or
- * until they are klv_detections_s old. */
+ * They belong to the frame that was answered, mostly an earlier one than that of the packet: the VMTI local set has the
+ * time and the number of that frame. The newest answer to a band is in each packet until a newer one is received, or
+ * until it is klv_answers_s old. */
 
-static const double klv_detections_s = 1;
+static const double klv_answers_s = 1;
 
 /* One for each thread that makes metadata. */
-typedef struct KlvDetections {
-    Detections  *from;
-    DetectionSet set;
-    KlvTarget    kept[klv_most_targets];
-    KlvTargets   targets;
-} KlvDetections;
+typedef struct KlvAnswers {
+    Answers   *from;
+    Answer     newest;
+    KlvTarget  kept[klv_most_targets];
+    KlvTargets targets;
+} KlvAnswers;
 
 /* The packet of a band, with the targets of publish.vmti (vmti). Returns its octets; 0: there is none. */
-size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *kept, enum VmtiSource vmti, const Frame *frame,
-                   Band band, const Geoid *geoid);
+size_t klv_of_band(uint8_t out[klv_most_octets], KlvAnswers *kept, enum VmtiSource vmti, const Frame *frame, Band band,
+                   const Geoid *geoid);
 
-/* A box is rounded outwards to whole pixels. The id is the track; of a detection without one 2^32 plus its place in the
- * list, which says nothing from frame to frame. */
-void klv_of_detections(KlvTargets *out, KlvTarget kept[klv_most_targets], const DetectionSet *set);
+/* A box is rounded outwards to whole pixels; a line of sight without one is the pixel that it goes through. The id is
+ * the track; of a detection without one 2^32 plus its place in the list, which says nothing from frame to frame. */
+void klv_of_answer(KlvTargets *out, KlvTarget kept[klv_most_targets], const Answer *answer);
 
 #endif

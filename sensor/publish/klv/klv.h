@@ -20,6 +20,8 @@ enum {
 typedef struct KlvTarget {
     uint64_t    id;         /* the same target has the same id in all frames */
     int         box[4];     /* left, top, right, bottom, px from 0, the last two beyond it; empty: not known */
+    bool        pointed;    /* without a box: it is known by one point, */
+    int         point[2];   /* column and row of its pixel, from 0; none where they are not in the image */
     double      confidence; /* 0 .. 1; NaN: none given */
     double      pixels;     /* of the target itself, within its box; NaN: not known */
     bool        located;

@@ -1,6 +1,8 @@
 /* sensor/publish/klv/klv_frame.c: the ST 0601 UAS Datalink local set of a frame. */
 #include "sensor/publish/klv/klv_private.h"
 
+#include "sensor/frame/source_sensor.h"
+
 enum { key_octets = 16, text_most = 63 };
 
 /* SMPTE universal key of the UAS Datalink local set. */
@@ -185,8 +187,7 @@ static void put_items(KlvWriter *w, const FrameRecord *r, uint64_t time_us, cons
 
 const char *klv_sensor_name(const KlvSource *source)
 {
-    static const char *const name[BAND_COUNT] = {"EO", "IR MWIR", "IR LWIR", "RADAR"};
-    return source->sensor ? source->sensor : name[source->band];
+    return source->sensor ? source->sensor : source_sensor_name[source->band];
 }
 
 double klv_vfov_deg(const FrameRecord *r)

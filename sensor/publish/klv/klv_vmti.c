@@ -63,7 +63,8 @@ static void put_place(KlvWriter *w, const Geodetic *place)
 /* Puts the local set of a VTarget pack after its id. */
 static void put_target(KlvWriter *w, const View *view, const KlvTarget *t, int class_id, int algorithm_id)
 {
-    double percent = 0;
+    const int around[4] = {t->point[0], t->point[1], t->point[0] + 1, t->point[1] + 1};
+    double    percent = 0;
     if (has_box(view, t->box)) {
         const double area_px = (double)(t->box[2] - t->box[0]) * (t->box[3] - t->box[1]);
         uint64_t     number[2];
@@ -73,6 +74,7 @@ static void put_target(KlvWriter *w, const View *view, const KlvTarget *t, int c
         klv_item_short(w, 3, number[1]);
         if (t->pixels > 0) percent = clamp(floor(100 * t->pixels / area_px + 0.5), 1, 100);
     }
+    if (t->pointed && has_box(view, around)) klv_item_short(w, 1, target_box_centre_number(around, view->width));
     if (t->confidence >= 0 && t->confidence <= 1) klv_item_number(w, 5, (uint64_t)(100 * t->confidence + 0.5), 1);
     if (percent > 0) klv_item_number(w, 7, (uint64_t)percent, 1);
     if (t->located) put_place(w, &t->place);

@@ -35,7 +35,7 @@ typedef struct Video {
     Channel          channel[BAND_COUNT + 1];
     uint8_t         *image, *tile; /* for the largest frame so far */
     size_t           image_octets;
-    KlvDetections    found; /* by a recogniser */
+    KlvAnswers       found; /* by a recogniser */
 } Video;
 
 /* ---- one frame ---------------------------------------------------------------------------------- */
@@ -303,7 +303,7 @@ Status consume_video(Consumer **out, const VideoOf *of)
     v->consumer = (Consumer){WANT_DISPLAY, put, NULL, close_video, "video", begin};
     v->of = *of;
     v->of.to = to;
-    v->found = (KlvDetections){.from = of->detections};
+    v->found = (KlvAnswers){.from = of->answers};
     v->to = to;
     v->labels = of->config->publish.video_labels;
     v->klv = of->config->publish.klv;

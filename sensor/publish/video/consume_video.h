@@ -20,11 +20,11 @@ typedef struct VideoOf {
     double        rate_hz;     /* of the run */
     const char   *host_folder; /* of several hosts: this one's, below that of the videos; NULL: the only one */
     bool          apart; /* with patient: each file is written in a thread of its own, and loses what it is late for */
-    Latency      *latency;      /* files that are apart are in it, `video_file`; NULL: none is kept */
-    bool          patient;      /* live: what cannot be encoded or written is counted and retried */
-    const Geoid  *geoid;        /* NULL: no heights above mean sea level */
-    StreamCounters *sent;       /* of all streams, added at the end; NULL: nowhere */
-    Detections     *detections; /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
+    Latency      *latency;   /* files that are apart are in it, `video_file`; NULL: none is kept */
+    bool          patient;   /* live: what cannot be encoded or written is counted and retried */
+    const Geoid  *geoid;     /* NULL: no heights above mean sea level */
+    StreamCounters *sent;    /* of all streams, added at the end; NULL: nowhere */
+    Answers        *answers; /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
 } VideoOf;
 
 /* Loads FFmpeg's libraries where a video or a stream is configured, and what the letters of its labels need; a command
