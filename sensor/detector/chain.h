@@ -14,6 +14,9 @@
 
 typedef struct Chain Chain;
 
+/* Share of the well that an automatic exposure fills on average: highlights of 2.8 times the mean still fit. */
+static const double chain_exposed_share = 0.35;
+
 /* Wavelength for which diffraction is computed, m: the mean of the photons over the band, of a black body of 300 K in
  * MWIR and LWIR and of 5772 K, the sun's, in the optical channels; channel as preset_band's. Against the OTF of all
  * wavelengths: within 0.001 (tests/sensor/test_sensor_mtf.c). */
