@@ -2,7 +2,6 @@
 #include "sensor/acquisition/acquisition.h"
 
 #include "sensor/acquisition/observer_eye.h"
-#include "sensor/detector/line_scan_private.h"
 
 /* Frequencies of the nodes, evenly in their logarithm. Below the first a target would be a thousand pixels high. */
 static const double first_cyc_px = 1e-3, last_cyc_px = 0.5;
@@ -15,10 +14,7 @@ AcquisitionObserver acquisition_default_observer(void)
         .snr = 2.5, .frame_hz = 30, .eye_s = 0.2, .picture_rad = 0.4, .luminance_cd_m2 = 34.26, .scene = NAN};
 }
 
-static double pixel_mrad(const Acquisition *of, const SensorPreset *p)
-{
-    return 1e3 * of->observer.picture_rad / p->height_px;
-}
+static double pixel_mrad(const Acquisition *of) { return 1e3 * of->observer.picture_rad / of->preset.height_px; }
 
 /* Power that the display's square pixels and the eye pass, at a frequency in cycles a pixel. */
 static double passed(const Acquisition *of, double eye_mrad_px, double f)
@@ -35,27 +31,28 @@ static double line_spectrum(double reach_px, double f)
 }
 
 /* Integrals over positive and negative frequencies of what is passed; the noise is white, or along the lines. */
-static void all_frequencies(Acquisition *of, const SensorPreset *p)
+static void all_frequencies(Acquisition *of)
 {
     /* the eye passes less than 1e-7 beyond 6 cycles a milliradian. Evenly in the logarithm, since lines' noise has long
      * waves, and these from far below a picture's width */
     enum { steps = 4000 };
-    const double eye_mrad_px = pixel_mrad(of, p), low = log(1e-7), high = log(6 * eye_mrad_px),
+    const double eye_mrad_px = pixel_mrad(of), low = log(1e-7), high = log(6 * eye_mrad_px),
                  step = (high - low) / steps;
     of->all = of->all_line = 0;
     for (int i = 0; i <= steps; i++) {
         const double f = exp(low + i * step), power = 2 * passed(of, eye_mrad_px, f) * f * step * (i % steps ? 1 : 0.5);
         of->all += power;
-        of->all_line += power * line_spectrum(p->line_noise_px, f);
+        of->all_line += power * line_spectrum(of->preset.line_noise_px, f);
     }
 }
 
-void acquisition_node(AcquisitionNode *n, const Acquisition *of, const SensorPreset *p, double f_cyc_px)
+void acquisition_node(AcquisitionNode *n, const Acquisition *of, double f_cyc_px)
 {
     /* the channel's power is below 1e-17 beyond a factor of e^3 */
     enum { steps = 60 };
     static const double reach = 3;
-    const double        eye_mrad_px = pixel_mrad(of, p), step = 2 * reach / steps, per_deg = 1e3 * rad_per_deg;
+    const SensorPreset *p = &of->preset;
+    const double        eye_mrad_px = pixel_mrad(of), step = 2 * reach / steps, per_deg = 1e3 * rad_per_deg;
     const double        field_deg = eye_mrad_px / per_deg * sqrt(p->width_px * p->height_px);
     const double        ctf = eye_threshold(f_cyc_px / eye_mrad_px * per_deg, of->observer.luminance_cd_m2, field_deg);
     *n = (AcquisitionNode){.f_cyc_px = f_cyc_px};
@@ -68,18 +65,19 @@ void acquisition_node(AcquisitionNode *n, const Acquisition *of, const SensorPre
         const double f = f_cyc_px * exp(i * step - reach), b = eye_channel(f, f_cyc_px);
         const double power = 2 * b * b * passed(of, eye_mrad_px, f) * f * step;
         n->seen += power;
-        n->seen_line += power * line_spectrum(p->line_noise_px, f);
+        n->seen_line += power * line_spectrum(of->preset.line_noise_px, f);
     }
 }
 
 void acquisition_prepare(Acquisition *out, const SensorPreset *p, const AcquisitionObserver *observer)
 {
+    out->preset = *p;
     out->observer = *observer;
     if (isnan(observer->scene)) out->observer.scene = p->band == BAND_OPTICAL ? 1 : 5;
-    all_frequencies(out, p);
+    all_frequencies(out);
     const double step = log(last_cyc_px / first_cyc_px) / (acquisition_nodes - 1);
     for (int i = 0; i < acquisition_nodes; i++)
-        acquisition_node(&out->node[i], out, p, i + 1 < acquisition_nodes ? first_cyc_px * exp(i * step) : last_cyc_px);
+        acquisition_node(&out->node[i], out, i + 1 < acquisition_nodes ? first_cyc_px * exp(i * step) : last_cyc_px);
 }
 
 /* ---- cycles ---------------------------------------------------------------------------------------- */

@@ -42,26 +42,27 @@ typedef struct AcquisitionNode {
     double   seen_line; /* the same of noise along the lines, whose spectrum is its own */
 } AcquisitionNode;
 
-enum { acquisition_nodes = 192 };
+enum { acquisition_nodes = 96 };
 
-/* A sensor's curves: about 5 ms to prepare, once a run; a query takes a microsecond. */
+/* A sensor's curves. */
 typedef struct Acquisition {
+    SensorPreset        preset;
     AcquisitionObserver observer;      /* scene: filled in */
     double              all, all_line; /* as seen and seen_line, across the channel: of all frequencies */
     AcquisitionNode     node[acquisition_nodes];
 } Acquisition;
 
 void acquisition_prepare(Acquisition *out, const SensorPreset *preset, const AcquisitionObserver *observer);
-/* One node, directly; out: prepared, for the observer. */
-void acquisition_node(AcquisitionNode *node, const Acquisition *of, const SensorPreset *preset, double f_cyc_px);
+/* One node, directly. of: prepared. */
+void acquisition_node(AcquisitionNode *node, const Acquisition *of, double f_cyc_px);
 
 /* CTF of both axes at a node, with noise. */
 void acquisition_threshold(double ctf[2], const Acquisition *of, const AcquisitionNode *node, const MrtdNoise *noise);
 
-/* Cycles a pixel that are resolved; 0: none. contrast: of either sign. Between nodes MRTD is a power of f: within 0.1 %
+/* Cycles a pixel that are resolved; 0: none. contrast: of either sign. Between nodes MRTD is a power of f: within 0.2 %
  * of the direct solution above 0.02 cycles a pixel (tests/sensor/test_acquisition.c). */
 double acquisition_cycles_px(const Acquisition *of, const MrtdNoise *noise, double contrast);
-/* TTP, per pixel. Within 0.2 % of the integral over 40 times as many nodes (same test). */
+/* TTP, per pixel. Within 0.2 % of the integral over 20 times as many nodes (same test). */
 double acquisition_ttp_px(const Acquisition *of, const MrtdNoise *noise, double contrast);
 
 #endif

@@ -165,6 +165,12 @@ double          chain_full(const Chain *c) { return c->full; }
 
 /* ---- figures ---------------------------------------------------------------------------------- */
 
+double chain_signal_e(double *exposure, const Chain *c, int channel, double radiance)
+{
+    if (exposure) *exposure = c->exposure;
+    return c->exposure * photon_table_electrons(c->channel[channel].photons, radiance);
+}
+
 double chain_counts_at(const Chain *c, int channel, double radiance)
 {
     const PhotonDetector *d = &c->preset.photons;

@@ -63,6 +63,8 @@ void chain_run(Chain *chain, const float *const radiance[], const SmallTargets *
 const uint16_t *chain_counts(const Chain *chain, int channel);
 const float    *chain_values(const Chain *chain, int channel);
 
+/* Electrons of this radiance, before noise, with the exposure of chain_expose, which may be NULL. */
+double chain_signal_e(double *exposure, const Chain *chain, int channel, double radiance_w_m2_sr);
 /* Counts for this radiance, unbounded, before noise. */
 double chain_counts_at(const Chain *chain, int channel, double radiance_w_m2_sr);
 /* Rms of all noise at this radiance, as radiance: temporal, fixed and along lines, without defective pixels. */

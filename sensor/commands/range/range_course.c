@@ -54,13 +54,13 @@ void range_at(RangePoint *out, const RangeCourse *c, double range_m)
     }
 }
 
-/* Where detection, by both methods, is as rare as one in ten. */
+/* Where detection, by both methods, is as rare as one in five. */
 static double far_enough(const RangeCourse *c)
 {
     RangePoint at;
     for (double range_m = 200; range_m < farthest_m; range_m *= 1.1) {
         range_at(&at, c, range_m);
-        if (at.p[BY_JOHNSON][TASK_DETECT] < 0.1 && at.p[BY_TTP][TASK_DETECT] < 0.1) return range_m;
+        if (at.p[BY_JOHNSON][TASK_DETECT] < 0.2 && at.p[BY_TTP][TASK_DETECT] < 0.2) return range_m;
     }
     return farthest_m;
 }

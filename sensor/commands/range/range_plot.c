@@ -35,7 +35,7 @@ void range_plot(FILE *to, const void *text)
 {
     const RangeCourse *c = ((const RangeText *)text)->course;
     const SvgAxis      km = svg_linear_axis(0, 1e-3 * c->row[range_rows - 1].range_m, box.left, box.right);
-    const SvgAxis      p = svg_linear_axis(0, 1, box.bottom, box.top);
+    const SvgAxis      p = {SVG_LINEAR, 0, 1, box.bottom, box.top, 6, {0, 0.2, 0.4, 0.6, 0.8, 1}};
     svg_begin(to, width_px, height_px, c->preset.name, ": probability of an observer's tasks over range",
               ((const RangeText *)text)->about);
     svg_axes(to, &box, &km, "range, km", &p, "probability");
