@@ -253,7 +253,7 @@ static void a_signal_is_known_without_surroundings_and_without_noise(void **stat
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
     CHECK_NEAR(t[0].band[BAND_OPTICAL].snr, 0.5 / 0.01, 1e-9);
     CHECK(isnan(t[0].band[BAND_OPTICAL].contrast) && isnan(t[0].band[BAND_LWIR].snr));
-    const TruthNoise none = {0, 0, 0};
+    const TruthNoise none = {.optical_w_m2_sr = 0};
     f.id[0] = 0; /* one pixel of the same brightness beside it */
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &none), 1);
     CHECK(t[0].band[BAND_OPTICAL].snr == 0);
