@@ -148,9 +148,9 @@ static double part(double f0, double y0, double f1, double y1)
 
 double acquisition_ttp_px(const Acquisition *of, const MrtdNoise *noise, double contrast)
 {
+    double sum[2] = {0, 0}, before[2] = {0, 0};
+    if (!(fabs(contrast) > 0)) return isnan(contrast) ? NAN : 0;
     const double c = fmin(fabs(contrast) / (2 * of->observer.scene), 1);
-    double       sum[2] = {0, 0}, before[2] = {0, 0};
-    if (!(c > 0)) return isnan(contrast) ? NAN : 0;
     for (int i = 0; i < acquisition_nodes; i++) {
         const AcquisitionNode *n = &of->node[i];
         double                 ctf[2];

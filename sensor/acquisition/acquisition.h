@@ -44,7 +44,7 @@ typedef struct AcquisitionNode {
 
 enum { acquisition_nodes = 96 };
 
-/* A sensor's curves. */
+/* A sensor's curves: some 10 ms to prepare, once a run; a query takes 3 us. */
 typedef struct Acquisition {
     SensorPreset        preset;
     AcquisitionObserver observer;      /* scene: filled in */
@@ -59,10 +59,10 @@ void acquisition_node(AcquisitionNode *node, const Acquisition *of, double f_cyc
 /* CTF of both axes at a node, with noise. */
 void acquisition_threshold(double ctf[2], const Acquisition *of, const AcquisitionNode *node, const MrtdNoise *noise);
 
-/* Cycles a pixel that are resolved; 0: none. contrast: of either sign. Between nodes MRTD is a power of f: within 0.2 %
- * of the direct solution above 0.02 cycles a pixel (tests/sensor/test_acquisition.c). */
+/* Cycles a pixel that are resolved; 0: none. contrast: of either sign. Between nodes MRTD is a power of f: within 0.1 %
+ * of the direct solution above 0.05 cycles a pixel (tests/sensor/test_acquisition.c). */
 double acquisition_cycles_px(const Acquisition *of, const MrtdNoise *noise, double contrast);
-/* TTP, per pixel. Within 0.2 % of the integral over 20 times as many nodes (same test). */
+/* TTP, per pixel. Within 0.25 % of the integral over 60 times as many nodes (same test). */
 double acquisition_ttp_px(const Acquisition *of, const MrtdNoise *noise, double contrast);
 
 #endif

@@ -38,7 +38,7 @@ typedef struct Camera {
 
 /* The detectors of the bands that have a sensor; noise false: without theirs. On failure it is closed. */
 Status camera_open(Camera *out, const Sensors *sensors, const Config *config, bool noise);
-/* Lets camera_expose say what an observer resolves, too. A millisecond a sensor. STATUS_NO_MEMORY. */
+/* Lets camera_expose say what an observer resolves, too. Some 10 ms a sensor. STATUS_NO_MEMORY. */
 Status camera_observe(Camera *camera, const Sensors *sensors, const Config *config);
 void   camera_close(Camera *camera);
 /* Exposes the sensors for this image, and gives their noise at its mean radiance. */

@@ -47,6 +47,14 @@ Status sensors_find(SensorPreset *out, const char *name)
     return preset_read(out, from, name);
 }
 
+void sensors_alone(SensorPreset *p)
+{
+    channels_standard();
+    if (p->channel && !p->channel->standard) channel_choose(p->channel);
+    p->optical = p->channel && p->channel->place == SPECTRAL_NIR ? OPTICAL_NIR : OPTICAL_PAN;
+    preset_refresh(p);
+}
+
 /* name: that of a preset; NULL: the sheet of sensor.table is added. */
 static Status add_sensor(Sensors *s, const Config *config, const char *name, unsigned bands)
 {

@@ -22,5 +22,7 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
  * logged.
  */
 Status sensors_find(SensorPreset *out, const char *name);
+/* The sensor by itself: its channel takes its place for the process, before tables are read, and its band is that. */
+void sensors_alone(SensorPreset *preset);
 
 #endif

@@ -217,10 +217,7 @@ static Status find_sensor(SensorPreset *p, const char *name)
 {
     Status status = strpbrk(name, "./") ? preset_read_sheet(p, name) : sensors_find(p, name);
     if (status != STATUS_OK) return status;
-    channels_standard();
-    if (p->channel && !p->channel->standard) channel_choose(p->channel);
-    p->optical = p->channel && p->channel->place == SPECTRAL_NIR ? OPTICAL_NIR : OPTICAL_PAN;
-    preset_refresh(p);
+    sensors_alone(p);
     return STATUS_OK;
 }
 
