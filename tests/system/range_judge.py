@@ -273,6 +273,13 @@ for name in ('staring_lwir', 'scanning_flir', 'tv'):
         say('range_cycles_' + name, np.array([r['cycles'] for r in table])[some] / size_px[some], cycles[some])
         some = [i for i, r in enumerate(table) if r['ttp_v'] / size_px[i] > 0.05][::10]
         say('range_ttp_' + name, [table[i]['ttp_v'] for i in some], [size_px[i] * ttp(curve, contrast[i] / 10) for i in some])
+    else:  # what the air adds to a lit background takes contrast away; light and air as other probes have them
+        sun = probe('sunlight', 'model,visibility_km,band,observer_m,sun_zenith_deg', [('us1976', 23, 'pan', 0, 45)])[0]
+        lit = 0.2 / np.pi * (float(sun['direct_w_m2']) * np.sin(np.radians(45)) + float(sun['diffuse_w_m2']))
+        air = probe('atmosphere', 'model,visibility_km,band,observer_m,target_m,range_km,temp_k,sun_zenith_deg,rel_azimuth_deg',
+                    [('us1976', 23, 'pan', 2, 1, r['range_m'] / 1000, 288, 45, 90) for r in table])
+        seen, added = lit * np.array([float(a['sun_tau']) for a in air]), np.array([float(a['scattered']) for a in air])
+        say('range_contrast_' + name, contrast, 0.3 * seen / (seen + added))
     for k, task in enumerate(('detect', 'recognise', 'identify')):
         say('range_p_%s_%s' % (task, name), [r['johnson_' + task] for r in table] + [r['ttp_' + task] for r in table],
             [johnson(r['cycles'] / (0.75, 3, 6)[k]) for r in table] + [ttpf(r['ttp_v'] / (2, 7.5, 13)[k]) for r in table], False)

@@ -31,6 +31,7 @@ for sensor in staring_lwir scanning_flir; do
     within range_cycles_$sensor 100 0.01 # a step of the judge's is 0.001, of 0.1 and more
     within range_ttp_$sensor 15 0.001
 done
+within range_contrast_tv 100 1e-3
 for sensor in staring_lwir scanning_flir tv; do
     for task in detect recognise identify; do within range_p_${task}_$sensor 150 1e-4; done
 done
