@@ -12,8 +12,8 @@
  *   returns          from about 0.002 at 4 cycles a degree; above 1 where none is seen
  *
  * Source: Barten, "Evaluation of subjective image quality with the square-root integral method", JOSA A 7 (1990) 2024,
- * the approximation that night vision models use. Beside Barten's full model of 1999 it is 5 to 31 % higher from 4 to 20
- * cycles a degree, and up to 1.8 times it at 1 (tests/system/range_judge.py). */
+ * the approximation that night vision models use. Beside Barten's full model of 1999 it is 5 to 31 % higher from 4 to
+ * 20 cycles a degree, and up to 1.8 times it at 1 (tests/system/range_judge.py). */
 double eye_threshold(double f_cyc_deg, double luminance_cd_m2, double field_deg);
 
 /* Transfer of pupil, retina and tremor, by which noise on a display is seen less; f_cyc_mrad >= 0, at the eye. Two
