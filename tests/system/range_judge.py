@@ -259,6 +259,29 @@ def resolved(name, contrast):
     return np.sqrt(both)
 
 
+def left(length):
+    return (1 - 1 / (3 * length)) / length if length > 1 else 1 - length / 3
+
+
+def contrast_resolved(s, f):
+    """The least contrast of both bars that an observer resolves, of a sensor without noise along its lines."""
+    w, e2 = 0.5 / f, []
+    for strips in (s.columns, s.rows):
+        e2.append((s.white * left(w) * left(7 * w) + strips * left(w)) / 0.2)
+    bars = [8 / np.pi**2 * sum(s.mtf(axis, n * f) * np.sinc(n * f) / n**2 for n in range(1, 16, 2)) for axis in range(2)]
+    return [2.5 * np.sqrt(e2[axis]) / s.unit / bars[axis] for axis in range(2)]
+
+
+got, want = [], []
+for name, contrasts in (('tv', (0.01, 0.02, 0.04)), ('staring_swir', (0.005, 0.01, 0.02)), ('staring_mwir', (0.03, 0.06, 0.1))):
+    s = CURVES[name][0]
+    f = np.linspace(0.02, 0.5, 481)
+    least = np.array([contrast_resolved(s, x) for x in f])
+    found = probe('acquisition', 'preset,contrast', [(name, c) for c in contrasts])
+    got += [float(r['cycles_px']) for r in found]
+    want += [np.sqrt(np.prod([f[np.nonzero(least[:, axis] <= c)[0].max()] for axis in range(2)])) for c in contrasts]
+say('cycles', got, want)
+
 for name in ('staring_lwir', 'scanning_flir', 'tv'):
     with open(os.path.join(FOLDER, name, 'range.csv'), encoding='utf-8') as file:
         table = [{k: float(v) for k, v in r.items()} for r in csv.DictReader(file)]
@@ -280,6 +303,8 @@ for name in ('staring_lwir', 'scanning_flir', 'tv'):
                     [('us1976', 23, 'pan', 2, 1, r['range_m'] / 1000, 288, 45, 90) for r in table])
         seen, added = lit * np.array([float(a['sun_tau']) for a in air]), np.array([float(a['scattered']) for a in air])
         say('range_contrast_' + name, contrast, 0.3 * seen / (seen + added))
+        some = [i for i, r in enumerate(table) if r['ttp_v'] / size_px[i] > 0.05][::10]
+        say('range_ttp_' + name, [table[i]['ttp_v'] for i in some], [size_px[i] * ttp(curve, contrast[i] / 2) for i in some])
     for k, task in enumerate(('detect', 'recognise', 'identify')):
         say('range_p_%s_%s' % (task, name), [r['johnson_' + task] for r in table] + [r['ttp_' + task] for r in table],
             [johnson(r['cycles'] / (0.75, 3, 6)[k]) for r in table] + [ttpf(r['ttp_v'] / (2, 7.5, 13)[k]) for r in table], False)

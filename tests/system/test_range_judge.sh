@@ -26,12 +26,14 @@ within eye_transfer 48 1e-9
 within barten_1999_from_1 20 1.8 # a formula of 1990 beside a model of 1999
 within barten_1999_from_4 16 1.35
 within ttp 24 0.0012
+within cycles 9 0.006 # a step of the judge's is 0.001, of 0.2 and more
 for sensor in staring_lwir scanning_flir; do
     within range_contrast_$sensor 100 2e-5
     within range_cycles_$sensor 100 0.01 # a step of the judge's is 0.001, of 0.1 and more
     within range_ttp_$sensor 15 0.001
 done
-within range_contrast_tv 100 1e-3
+within range_contrast_tv 100 1e-4
+within range_ttp_tv 10 0.002
 for sensor in staring_lwir scanning_flir tv; do
     for task in detect recognise identify; do within range_p_${task}_$sensor 150 1e-4; done
 done
