@@ -151,6 +151,8 @@ static const struct Command {
     {"record", record_command, "record an exercise from the network", false, false},
     {"model", model_command, "list models; describe or draw one, built in or from a file", true, false},
     {"heat", heat_command, "a vehicle's temperatures over a clear day: table, plot and thermal images", true, false},
+    {"range", range_command, "how far a sensor's observer detects, recognises, identifies: table and plot", true,
+     false},
     {"rcs", rcs_command, "a target's radar cross section over aspect: table, polar plot and a radar image", true,
      false},
     {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true,

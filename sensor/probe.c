@@ -1,10 +1,14 @@
 /* sensor/probe.c: `pitviper probe` for detectors: MTF, NETD, three-dimensional noise and MRTD as rows of CSV. */
 #include "sensor/probe.h"
 
+#include "sensor/acquisition/acquisition.h"
+#include "sensor/acquisition/observer_eye.h"
+#include "sensor/detector/chain.h"
 #include "sensor/detector/mrtd.h"
 #include "sensor/detector/array_noise.h"
 #include "sensor/detector/photons.h"
 #include "sensor/detector/preset.h"
+#include "sensor/settings/sensors.h"
 
 #include <stdlib.h>
 
@@ -164,6 +168,62 @@ static const char *mrtd_row(void *state, const ProbeValue *in, ProbeValue *out)
     return NULL;
 }
 
+/* ---- an observer --------------------------------------------------------------------------------- */
+
+static const char *eye_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    (void)state;
+    const double f = in[0].number, luminance_cd_m2 = or_else(&in[1], 34.26), field_deg = or_else(&in[2], 25);
+    if (!(f > 0 && f <= 1000)) return "f_cyc_deg must be above 0 and at most 1000";
+    if (!(luminance_cd_m2 >= 0.01 && luminance_cd_m2 <= 1e4 && field_deg > 0 && field_deg <= 180))
+        return "luminance_cd_m2 must be in 0.01 .. 10000, field_deg above 0 and at most 180";
+    out[0].number = eye_threshold(f, luminance_cd_m2, field_deg);
+    out[1].number = eye_transfer(f / rad_per_deg * 1e-3, luminance_cd_m2);
+    return NULL;
+}
+
+typedef struct Observed {
+    char        name[64];
+    Acquisition curves;
+} Observed;
+
+static Status observed_open(void **state, int argc, char **argv)
+{
+    (void)argv;
+    if (argc > 1) {
+        log_error("acquisition: usage: probe acquisition, without arguments");
+        return STATUS_BAD_VALUE;
+    }
+    *state = calloc(1, sizeof(Observed));
+    return *state ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+static const char *observed_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    char         path[4096];
+    SensorPreset p;
+    Observed    *o = state;
+    MrtdNoise    noise;
+    const double contrast = in[1].number, level = in[2].number, temp_k = isnan(level) ? 288 : level;
+    if (!etc_path(path, sizeof path, "sensors.csv") || preset_read(&p, path, in[0].text) != STATUS_OK)
+        return "preset is not a sensor of etc/sensors.csv";
+    sensors_alone(&p);
+    if (strcmp(o->name, p.name) != 0) { /* the curves of the row before */
+        const AcquisitionObserver observer = acquisition_default_observer();
+        acquisition_prepare(&o->curves, &p, &observer);
+        snprintf(o->name, sizeof o->name, "%s", p.name);
+    }
+    if (p.band == BAND_OPTICAL) {
+        const double signal_e = isnan(level) ? chain_exposed_share * preset_photons(&p).well_e : level;
+        if (!(signal_e > 0 && signal_e <= 1e12)) return "level must be electrons above 0, at most 1e12";
+        mrtd_noise_reflected(&noise, &p, signal_e, 0);
+    } else if (!(temp_k >= 180 && temp_k <= 1500)) return "level must be a background of 180 .. 1500 K";
+    else mrtd_noise_emitted(&noise, &p, temp_k);
+    out[0].number = acquisition_cycles_px(&o->curves, &noise, contrast);
+    out[1].number = acquisition_ttp_px(&o->curves, &noise, contrast);
+    return NULL;
+}
+
 #define SIGMAS "sigma_tvh,sigma_tv?,sigma_th?,sigma_vh?,sigma_t?,sigma_v?,sigma_h?,seed?"
 
 const Probe sensor_probes[] = {
@@ -195,6 +255,19 @@ const Probe sensor_probes[] = {
      .out = "f_cyc_mrad,mrtd_v_bars_k,mrtd_h_bars_k,first_v_bars_k,first_h_bars_k,mtf_h,mtf_v",
      .open = mrtd_open,
      .row = mrtd_row,
+     .close = free},
+    {.name = "eye",
+     .help = "contrast threshold of an observer's eyes in front of a display (Barten 1990), and their transfer",
+     .in = "f_cyc_deg,luminance_cd_m2?,field_deg?",
+     .out = "threshold,transfer",
+     .row = eye_row},
+    {.name = "acquisition",
+     .help = "what an observer of a sensor resolves at a contrast (K; reflected light: a share): cycles a pixel by the "
+             "MRTD, and TTP a pixel; level: K of the background, or its electrons",
+     .in = "preset$,contrast,level?",
+     .out = "cycles_px,ttp_px",
+     .open = observed_open,
+     .row = observed_row,
      .close = free},
 };
 const int sensor_probe_count = sizeof sensor_probes / sizeof *sensor_probes;

@@ -29,6 +29,8 @@ int record_command(int argc, char **argv);
 int model_command(int argc, char **argv);
 /* `pitviper heat`: a vehicle's temperatures over a clear day. */
 int heat_command(int argc, char **argv);
+/* `pitviper range`: how far a sensor's observer detects, recognises and identifies a target. */
+int range_command(int argc, char **argv);
 /* `pitviper rcs`: a target's radar cross section over aspect. */
 int rcs_command(int argc, char **argv);
 /* `pitviper terrain`: makes a terrain store from files, or describes one. */

@@ -207,6 +207,7 @@ static Status write_products(const FrameOptions *o, const SavedFrame *file, Save
     char         hash[sha256_text_size];
     unsigned     raw = 0;
     Status       status = camera ? camera_open(camera, &s->sensors, &s->config, true) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = camera_observe(camera, &s->sensors, &s->config);
     for (int b = 0; b < BAND_COUNT; b++)
         if (status == STATUS_OK && camera->chain[b] && s->config.detector.raw) raw |= 1u << b;
     const unsigned kept = file->request.bands | (frame_files_truth(&s->config) ? frame_truth : 0);

@@ -10,9 +10,6 @@
 
 #include <stdlib.h>
 
-/* Share of the well that an automatic exposure fills on average: highlights of 2.8 times the mean still fit. */
-static const double exposed_share = 0.35;
-
 typedef struct Channel {
     PhotonTable *photons;
     float       *fixed; /* v, h and vh noise, unit of sigma_ref_e */
@@ -113,7 +110,7 @@ Status chain_create(Chain **out, const SensorPreset *preset, int width, int heig
     c->exposure = 1;
     c->full = (uint16_t)((1u << (int)preset->bits) - 1);
     c->step_e = d->well_e / c->full;
-    const double level_e = preset->auto_exposure ? exposed_share * d->well_e : photon_electrons(d, 300, NULL);
+    const double level_e = preset->auto_exposure ? chain_exposed_share * d->well_e : photon_electrons(d, 300, NULL);
     c->sigma_ref_e = sqrt(level_e + d->dark_e + d->read_e * d->read_e);
 
     Status status = STATUS_OK;
@@ -168,6 +165,12 @@ double          chain_full(const Chain *c) { return c->full; }
 
 /* ---- figures ---------------------------------------------------------------------------------- */
 
+double chain_signal_e(double *exposure, const Chain *c, int channel, double radiance)
+{
+    if (exposure) *exposure = c->exposure;
+    return c->exposure * photon_table_electrons(c->channel[channel].photons, radiance);
+}
+
 double chain_counts_at(const Chain *c, int channel, double radiance)
 {
     const PhotonDetector *d = &c->preset.photons;
@@ -219,7 +222,7 @@ void chain_expose(Chain *c, const float *const radiance[])
         for (size_t i = 0; i < count; i++) sum += isfinite(radiance[k][i]) ? fmax(0, radiance[k][i]) : 0;
         most = fmax(most, photon_table_electrons(c->channel[k].photons, sum / (double)count) + d->dark_e);
     }
-    if (most > exposed_share * d->well_e) c->exposure = exposed_share * d->well_e / most;
+    if (most > chain_exposed_share * d->well_e) c->exposure = chain_exposed_share * d->well_e / most;
 }
 
 /* Notes the watched pixel's electrons after a stage. */

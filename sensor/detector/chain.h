@@ -14,6 +14,9 @@
 
 typedef struct Chain Chain;
 
+/* Share of the well that an automatic exposure fills on average: highlights of 2.8 times the mean still fit. */
+static const double chain_exposed_share = 0.35;
+
 /* Wavelength for which diffraction is computed, m: the mean of the photons over the band, of a black body of 300 K in
  * MWIR and LWIR and of 5772 K, the sun's, in the optical channels; channel as preset_band's. Against the OTF of all
  * wavelengths: within 0.001 (tests/sensor/test_sensor_mtf.c). */
@@ -60,6 +63,8 @@ void chain_run(Chain *chain, const float *const radiance[], const SmallTargets *
 const uint16_t *chain_counts(const Chain *chain, int channel);
 const float    *chain_values(const Chain *chain, int channel);
 
+/* Electrons of this radiance, before noise, with the exposure of chain_expose, which may be NULL. */
+double chain_signal_e(double *exposure, const Chain *chain, int channel, double radiance_w_m2_sr);
 /* Counts for this radiance, unbounded, before noise. */
 double chain_counts_at(const Chain *chain, int channel, double radiance_w_m2_sr);
 /* Rms of all noise at this radiance, as radiance: temporal, fixed and along lines, without defective pixels. */

@@ -36,4 +36,32 @@ typedef struct Mrtd {
 /* Predicts the MRTD of an MWIR or LWIR sensor. f_cyc_px: above 0, to 0.5. */
 void mrtd_predict(Mrtd *out, const SensorPreset *preset, double f_cyc_px, const MrtdObserver *observer);
 
+/* ---- the same in its parts: noise at a background, and bars at a frequency ------------------------- */
+
+/* Squared noise of a pixel by kind, electrons, and the electrons of a unit of contrast. That unit is 1 K of an emitting
+ * background, and a difference as large as the mean of a reflecting one: then `Mrtd` is the minimum resolvable
+ * contrast, (bar - gap) / mean. */
+typedef struct MrtdNoise {
+    double tvh_e2, kind_e2[noise_axes]; /* of the pixel, temporal; the other kinds, as Noise3d's */
+    double gain_e2, row_gain_e2;        /* differences of gain: of pixels; of rows, where a row has one detector */
+    double line_e2;                     /* along the lines, of one frame */
+    double per_unit_e;
+} MrtdNoise;
+
+void mrtd_noise_emitted(MrtdNoise *out, const SensorPreset *preset, double temp_k);
+/* signal_e: electrons of the mean background; exposure: share of the integration time, 0 .. 1. */
+void mrtd_noise_reflected(MrtdNoise *out, const SensorPreset *preset, double signal_e, double exposure);
+/* Both at once: signal_e of the background at this exposure, per_unit_e of a unit of contrast. */
+void mrtd_noise_of(MrtdNoise *out, const SensorPreset *preset, double signal_e, double per_unit_e, double exposure);
+
+typedef struct MrtdBars {
+    double mtf[2], all[2], first[2];      /* transfer at f; contrast of bars: all harmonics, the first */
+    double across, along;                 /* share of white noise left in a mean over a bar's width; length */
+    double line_across[2], line_along[2]; /* of noise along the lines, [vertical bars, horizontal bars] */
+} MrtdBars;
+
+void mrtd_bars(MrtdBars *out, const SensorPreset *preset, double f_cyc_px);
+/* out->mtf is that of the bars. observer->temp_k is not used. */
+void mrtd_at(Mrtd *out, const MrtdBars *bars, const MrtdNoise *noise, const MrtdObserver *observer);
+
 #endif

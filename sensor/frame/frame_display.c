@@ -4,6 +4,8 @@
 #include "sensor/detector/display_values.h"
 #include "sensor/detector/array_noise.h"
 
+#include <stdlib.h>
+
 /* The planes that a band's detector receives; returns how many. */
 static int band_radiance(const float *plane[3], const Picture *p, int band)
 {
@@ -60,9 +62,46 @@ Status camera_open(Camera *out, const Sensors *sensors, const Config *config, bo
     return status;
 }
 
+Status camera_observe(Camera *camera, const Sensors *sensors, const Config *config)
+{
+    const AcquisitionObserver observer = acquisition_default_observer();
+    for (int b = 0; b < BAND_COUNT; b++) {
+        if (!sensors->has[b]) continue;
+        SensorPreset preset = sensors->preset[b];
+        preset.width_px = config->sensor.width_px;
+        preset.height_px = config->sensor.height_px;
+        if (!camera->observed[b]) camera->observed[b] = malloc(sizeof *camera->observed[b]);
+        if (!camera->observed[b]) return STATUS_NO_MEMORY;
+        acquisition_prepare(camera->observed[b], &preset, &observer);
+    }
+    return STATUS_OK;
+}
+
+/* The noise that an observer sees at this mean radiance. Of R, G and B it is that of G, which is lower in their mean.
+ */
+static void noise_observed(MrtdNoise *out, const Camera *camera, int band, double mean_w_m2_sr)
+{
+    const Chain        *chain = camera->chain[band];
+    const SensorPreset *p = &camera->observed[band]->preset;
+    const bool          colours = band == BAND_OPTICAL && p->optical == OPTICAL_RGB;
+    double              exposure, slope, per_unit_e;
+    const double        signal_e = chain_signal_e(&exposure, chain, colours ? 1 : 0, mean_w_m2_sr);
+    per_unit_e = signal_e;
+    if (band != BAND_OPTICAL) {
+        const SpectralBand seen = preset_seen((Band)band, OPTICAL_PAN, -1);
+        planck_seen(&seen, planck_seen_inverse(&seen, mean_w_m2_sr), &slope);
+        per_unit_e = (chain_signal_e(NULL, chain, 0, 1.001 * mean_w_m2_sr) - signal_e) / (0.001 * mean_w_m2_sr) * slope;
+    }
+    mrtd_noise_of(out, p, signal_e, per_unit_e, exposure);
+    if (colours) out->per_unit_e *= sqrt(3);
+}
+
 void camera_close(Camera *camera)
 {
-    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(camera->chain[b]);
+    for (int b = 0; b < BAND_COUNT; b++) {
+        chain_destroy(camera->chain[b]);
+        free(camera->observed[b]);
+    }
     *camera = (Camera){.chain = {NULL}};
 }
 
@@ -75,15 +114,18 @@ void camera_expose(TruthNoise *noise, Camera *camera, const Picture *picture, co
     for (int b = 0; b < BAND_COUNT; b++)
         if (chain[b] && band_radiance(plane, picture, b)) chain_expose(chain[b], plane);
     noise->optical_w_m2_sr = fmax(optical_sigma(picture, config), optical_dark_sigma);
-    if (chain[BAND_OPTICAL])
-        noise->optical_w_m2_sr = chain_sigma(chain[BAND_OPTICAL], 0, mean_radiance(picture, BAND_OPTICAL));
-    for (int b = BAND_MWIR; b <= BAND_LWIR; b++) {
-        double      *netd_k = b == BAND_MWIR ? &noise->netd_mwir_k : &noise->netd_lwir_k, slope;
+    for (int b = BAND_OPTICAL; b <= BAND_LWIR; b++) {
         const double mean = chain[b] ? mean_radiance(picture, b) : 0;
+        if (chain[b] && b == BAND_OPTICAL) noise->optical_w_m2_sr = chain_sigma(chain[b], 0, mean);
         if (!(mean > 0)) continue;
-        const SpectralBand seen = preset_seen((Band)b, OPTICAL_PAN, -1);
-        planck_seen(&seen, planck_seen_inverse(&seen, mean), &slope);
-        *netd_k = chain_sigma(chain[b], 0, mean) / slope;
+        if (b != BAND_OPTICAL) {
+            double            *netd_k = b == BAND_MWIR ? &noise->netd_mwir_k : &noise->netd_lwir_k, slope;
+            const SpectralBand seen = preset_seen((Band)b, OPTICAL_PAN, -1);
+            planck_seen(&seen, planck_seen_inverse(&seen, mean), &slope);
+            *netd_k = chain_sigma(chain[b], 0, mean) / slope;
+        }
+        noise->observed[b] = camera->observed[b];
+        if (camera->observed[b]) noise_observed(&noise->bars[b], camera, b, mean);
     }
 }
 

@@ -31,12 +31,15 @@ typedef struct FrameLevel {
 
 /* The detectors of a picture's bands, with what they carry from frame to frame. */
 typedef struct Camera {
-    Chain     *chain[BAND_COUNT]; /* NULL: no sensor; white noise as configured */
-    FrameLevel level[BAND_COUNT];
+    Chain       *chain[BAND_COUNT]; /* NULL: no sensor; white noise as configured */
+    FrameLevel   level[BAND_COUNT];
+    Acquisition *observed[BAND_COUNT]; /* what an observer of a sensor resolves; NULL: not requested */
 } Camera;
 
 /* The detectors of the bands that have a sensor; noise false: without theirs. On failure it is closed. */
 Status camera_open(Camera *out, const Sensors *sensors, const Config *config, bool noise);
+/* Lets camera_expose say what an observer resolves, too. Some 10 ms a sensor. STATUS_NO_MEMORY. */
+Status camera_observe(Camera *camera, const Sensors *sensors, const Config *config);
 void   camera_close(Camera *camera);
 /* Exposes the sensors for this image, and gives their noise at its mean radiance. */
 void camera_expose(TruthNoise *noise, Camera *camera, const Picture *picture, const Config *config);

@@ -17,7 +17,8 @@ static Status open_camera(Instruments *list, const InstrumentsOf *of)
     c->instrument = (Instrument){&camera_kind, camera_kind.name};
     c->config = of->config;
     for (int b = 0; b < BAND_COUNT; b++) c->sensor |= of->sensors->has[b];
-    const Status status = camera_open(&c->camera, of->sensors, of->config, true);
+    Status status = camera_open(&c->camera, of->sensors, of->config, true);
+    if (status == STATUS_OK) status = camera_observe(&c->camera, of->sensors, of->config);
     const Status added = instruments_add(list, &c->instrument);
     return status == STATUS_OK ? added : status;
 }

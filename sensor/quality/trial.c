@@ -153,7 +153,7 @@ static Status targets(TrialFrame *f)
     const World     *world = &f->scene->world;
     Target          *target = arena_alloc(f->arena, (size_t)f->snapshot.count + 1, sizeof *target);
     EyeState         eye = {.host_index = -1};
-    const TruthNoise noise = {0.1, 0.03, 0.03};
+    const TruthNoise noise = {.optical_w_m2_sr = 0.1, .netd_mwir_k = 0.03, .netd_lwir_k = 0.03};
     if (!target) return STATUS_NO_MEMORY;
     ecef_from_enu(eye.p_ecef, &world->frame, f->request.view.p_enu);
     m3_mul(eye.r_ecef_from_cam, world->frame.r_ecef_from_enu, f->request.view.r_enu_from_cam);

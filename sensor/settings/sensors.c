@@ -33,21 +33,34 @@ static void apply_raster(Config *config, const SensorPreset *p)
     if (!config_given(config, "sensor.hfov_deg")) config->sensor.hfov_deg = p->hfov_deg;
 }
 
-/* name: that of a preset; NULL: the sheet of sensor.table is added. */
-static Status add_sensor(Sensors *s, const Config *config, const char *name, unsigned bands)
+Status sensors_find(SensorPreset *out, const char *name)
 {
-    char         path[4096];
-    SensorPreset p;
-    const char  *key = name ? "sensor.preset" : "sensor.table";
-    const char  *own = etc_own("sensors.csv"), *from = path;
-    if (name && !etc_path(path, sizeof path, "sensors.csv")) return STATUS_BAD_VALUE;
-    if (name && own) {
+    char        path[4096];
+    const char *own = etc_own("sensors.csv"), *from = path;
+    if (!etc_path(path, sizeof path, "sensors.csv")) return STATUS_BAD_VALUE;
+    if (own) {
         bool         has;
         const Status opened = preset_has(&has, own, name);
         if (opened != STATUS_OK) return opened;
         if (has) from = own;
     }
-    const Status status = name ? preset_read(&p, from, name) : preset_read_sheet(&p, config->sensor.table);
+    return preset_read(out, from, name);
+}
+
+void sensors_alone(SensorPreset *p)
+{
+    channels_standard();
+    if (p->channel && !p->channel->standard) channel_choose(p->channel);
+    p->optical = p->channel && p->channel->place == SPECTRAL_NIR ? OPTICAL_NIR : OPTICAL_PAN;
+    preset_refresh(p);
+}
+
+/* name: that of a preset; NULL: the sheet of sensor.table is added. */
+static Status add_sensor(Sensors *s, const Config *config, const char *name, unsigned bands)
+{
+    SensorPreset p;
+    const char  *key = name ? "sensor.preset" : "sensor.table";
+    const Status status = name ? sensors_find(&p, name) : preset_read_sheet(&p, config->sensor.table);
     if (status == STATUS_BAD_VALUE && *config_where(config, key))
         log_error("config: %s%s: see the error above", config_where(config, key), key);
     if (status != STATUS_OK) return status;

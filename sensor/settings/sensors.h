@@ -18,4 +18,11 @@ typedef struct Sensors {
  * is not rendered, noise given for a band whose sensor has its own, a distortion that is not invertible. */
 Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands);
 
+/* The row of that name in the user's table (sensor.table), where it has one, else in etc/sensors.csv. Failures are
+ * logged.
+ */
+Status sensors_find(SensorPreset *out, const char *name);
+/* The sensor by itself: its channel takes its place for the process, before tables are read, and its band is that. */
+void sensors_alone(SensorPreset *preset);
+
 #endif

@@ -238,6 +238,19 @@ static void plain_band(TargetBand *out, const Target *t, const TargetPixels *px,
     if (!look.alone || noise_sigma > 0) out->snr = to_noise(&look, px, noise_sigma);
 }
 
+/* What an observer makes of its visible pixels. The bars of the MRTD stand for a target's mean, TTP for its mean and
+ * variance together. */
+static void observe(TargetBand *out, double pixels, const TruthNoise *noise, int band)
+{
+    const Acquisition *of = noise->observed[band];
+    if (!of) return;
+    const bool   emits = band != BAND_OPTICAL;
+    const double size_px = sqrt(pixels), mean = emits ? out->contrast_k : out->contrast;
+    out->cycles = size_px * acquisition_cycles_px(of, &noise->bars[band], mean);
+    out->ttp_v = size_px * acquisition_ttp_px(of, &noise->bars[band], emits ? out->dt_rss_k : mean);
+    for (int k = 0; k < acquisition_tasks; k++) out->p[k] = ttp_probability(out->ttp_v / ttp_criteria.at50[k]);
+}
+
 static void radiometry(Target *t, const TargetPixels *px, const Picture *picture, const World *world,
                        const RenderRequest *request, const TruthNoise *noise)
 {
@@ -262,6 +275,7 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
         t->band[BAND_LWIR].intensity_w_sr = intensity(t, px, view, picture_lwir);
     }
     intensity_error(t, px, picture, view);
+    for (int b = BAND_OPTICAL; b <= BAND_LWIR; b++) observe(&t->band[b], px->visible, noise, b);
     if (picture->radar)
         plain_band(&t->band[BAND_RADAR], t, px, picture, &(PlainPlanes){plain_value, picture->radar, picture_radar, 1},
                    0);
@@ -286,14 +300,26 @@ static void visibility_of(Target *t, const TargetPixels *px, bool plants)
 int truth_targets(Target *out, const Picture *picture, const World *world, const Snapshot *snapshot,
                   const RenderRequest *request, const EyeState *eye, const TruthNoise *noise)
 {
-    int count = 0;
+    static const TargetBand unknown = {.contrast_k = NAN,
+                                       .dt_rss_k = NAN,
+                                       .contrast = NAN,
+                                       .snr = NAN,
+                                       .intensity_w_sr = NAN,
+                                       .intensity_error_w_sr = NAN,
+                                       .veil_transmittance = NAN,
+                                       .cycles = NAN,
+                                       .ttp_v = NAN,
+                                       .p = {NAN, NAN, NAN},
+                                       .error_rms_k = NAN,
+                                       .error_median_k = NAN};
+    int                     count = 0;
     for (int i = 0; i < snapshot->count; i++) {
         const TargetPixels *px = &picture->target[i];
         if (i == eye->host_index || !(px->projected || px->amodal > 0)) continue;
         Target t = {
             .index = i, .pixels = px->visible, .visible_fraction = NAN, .foliage_fraction = NAN, .occluder_index = -1};
         t.error_px = t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
-        for (int b = 0; b < BAND_COUNT; b++) t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+        for (int b = 0; b < BAND_COUNT; b++) t.band[b] = unknown;
         for (int b = BAND_OPTICAL; b <= BAND_LWIR && px->visible > 0; b++)
             if (request->bands >> b & 1) t.band[b].veil_transmittance = 1 - px->veiled[b];
         line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);

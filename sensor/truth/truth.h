@@ -6,6 +6,8 @@
 
 #include "render/frame/render.h"
 #include "render/frame/world.h"
+#include "sensor/acquisition/acquisition.h"
+#include "sensor/acquisition/criteria.h"
 
 /* The target's pixels are those with its id in the truth planes. A small one (TargetPixels.small) has its own
  * samples instead, and a ring of pixels without any small target. */
@@ -20,6 +22,8 @@ typedef struct TargetBand {
     double intensity_error_w_sr; /* rms sampling error; of a small target, in a frame with a budget */
     double
         veil_transmittance; /* transmittance of smoke and dust in front of it, mean over its visible pixels; 1: none */
+    double cycles, ttp_v;   /* that an observer resolves on its visible part; its TTP value; without a sensor NaN */
+    double p[acquisition_tasks];        /* of that observer's tasks, by ttp_v */
     double error_rms_k, error_median_k; /* thermal: of its pixels, by its position, heat and tables (frame_error.h) */
 } TargetBand;
 
@@ -47,6 +51,9 @@ static const double truth_occluded_least = 0.01;
 /* Detector noise, for snr: sigma in W/(m2 sr) per optical channel, in K for the thermal bands. */
 typedef struct TruthNoise {
     double optical_w_m2_sr, netd_mwir_k, netd_lwir_k;
+    /* what an observer of a band's sensor resolves, at the noise of the frame's mean radiance; NULL: there is none */
+    const Acquisition *observed[BAND_COUNT];
+    MrtdNoise          bars[BAND_COUNT];
 } TruthNoise;
 
 /* The sensor's position and motion, for line of sight and its rate. */

@@ -158,7 +158,7 @@ static inline FrameError error_of_targets(Target **out, int *targets_out, TrialF
     FrameError       error;
     Target          *target = arena_alloc(f->arena, (size_t)f->snapshot.count + 1, sizeof *target);
     EyeState         eye = {.host_index = -1};
-    const TruthNoise noise = {0.1, 0.03, 0.03};
+    const TruthNoise noise = {.optical_w_m2_sr = 0.1, .netd_mwir_k = 0.03, .netd_lwir_k = 0.03};
     ecef_from_enu(eye.p_ecef, &lab.frame, f->request.view.p_enu);
     m3_mul(eye.r_ecef_from_cam, lab.frame.r_ecef_from_enu, f->request.view.r_enu_from_cam);
     const int targets = truth_targets(target, &f->picture, &f->scene->world, &f->snapshot, &f->request, &eye, &noise);

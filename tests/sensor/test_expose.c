@@ -80,11 +80,57 @@ static void sensors_at_the_pictures_radiance(void **state)
     camera_close(&camera);
 }
 
+/* All of it together, as a share of the unit of contrast. */
+static double all_noise(const MrtdNoise *n)
+{
+    double e2 = n->tvh_e2 + n->gain_e2 + n->row_gain_e2 + n->line_e2;
+    for (int k = NOISE_TV; k < noise_axes; k++) e2 += n->kind_e2[k];
+    return sqrt(e2) / n->per_unit_e;
+}
+
+/* What an observer is shown is the noise of the detector's chain, kind by kind: together it is the chain's, in K and as
+ * a share of the mean; of colours it is that of green, by the root of three; and only where it is asked for. */
+static void an_observer_sees_the_noise_of_the_chain(void **state)
+{
+    static const char *const name[BAND_COUNT] = {
+        [BAND_MWIR] = "staring_mwir", [BAND_LWIR] = "scanning_flir2", [BAND_OPTICAL] = "tv"};
+    (void)state;
+    for (int colours = 0; colours < 2; colours++) {
+        char          path[512];
+        Config        config = config_default();
+        Sensors       sensors = {.has = {false}};
+        Camera        camera;
+        TruthNoise    noise;
+        const Picture picture = picture_of();
+        CHECK(etc_path(path, sizeof path, "sensors.csv"));
+        for (int b = BAND_OPTICAL; b <= BAND_LWIR; b++) {
+            sensors.has[b] = true;
+            CHECK(preset_read(&sensors.preset[b], path, name[b]) == STATUS_OK);
+        }
+        sensors.preset[BAND_OPTICAL].optical = colours ? OPTICAL_RGB : OPTICAL_PAN;
+        config.sensor.width_px = width, config.sensor.height_px = height;
+        CHECK(camera_open(&camera, &sensors, &config, true) == STATUS_OK);
+        camera_expose(&noise, &camera, &picture, &config);
+        CHECK(!noise.observed[BAND_LWIR] && !noise.observed[BAND_OPTICAL]);
+        CHECK(camera_observe(&camera, &sensors, &config) == STATUS_OK);
+        camera_expose(&noise, &camera, &picture, &config);
+        for (int b = BAND_OPTICAL; b <= BAND_LWIR; b++)
+            CHECK(noise.observed[b] && noise.observed[b]->preset.width_px == width);
+        CHECK(!noise.observed[BAND_RADAR]);
+        CHECK_NEAR(all_noise(&noise.bars[BAND_MWIR]) / noise.netd_mwir_k, 1, 1e-4);
+        CHECK_NEAR(all_noise(&noise.bars[BAND_LWIR]) / noise.netd_lwir_k, 1, 1e-4);
+        const double share = chain_sigma(camera.chain[BAND_OPTICAL], colours, 1.5) / 1.5;
+        CHECK_NEAR(all_noise(&noise.bars[BAND_OPTICAL]) / share * (colours ? sqrt(3) : 1), 1, 1e-4);
+        camera_close(&camera);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(figures_of_the_settings),
         cmocka_unit_test(sensors_at_the_pictures_radiance),
+        cmocka_unit_test(an_observer_sees_the_noise_of_the_chain),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -253,13 +253,49 @@ static void a_signal_is_known_without_surroundings_and_without_noise(void **stat
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
     CHECK_NEAR(t[0].band[BAND_OPTICAL].snr, 0.5 / 0.01, 1e-9);
     CHECK(isnan(t[0].band[BAND_OPTICAL].contrast) && isnan(t[0].band[BAND_LWIR].snr));
-    const TruthNoise none = {0, 0, 0};
+    const TruthNoise none = {.optical_w_m2_sr = 0};
     f.id[0] = 0; /* one pixel of the same brightness beside it */
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &none), 1);
     CHECK(t[0].band[BAND_OPTICAL].snr == 0);
     optical[0] = 0.25f;
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &none), 1);
     CHECK(isnan(t[0].band[BAND_OPTICAL].snr) && t[0].band[BAND_OPTICAL].contrast == 1);
+}
+
+/* What an observer of a sensor resolves is of its visible pixels, of the contrast that they have, and of a band with a
+ * sensor. A contrast of 2 K is far above the MRTD of this one, so that its cycles are those of the pixels. */
+static void an_observer_resolves_what_is_visible(void **state)
+{
+    (void)state;
+    static Acquisition        curves;
+    SensorPreset              p;
+    Target                    t[2];
+    const AcquisitionObserver observer = acquisition_default_observer();
+    TruthNoise                with = noise;
+    assert_int_equal(preset_read(&p, "etc/sensors.csv", "staring_lwir"), STATUS_OK);
+    acquisition_prepare(&curves, &p, &observer);
+    with.observed[BAND_LWIR] = &curves;
+    mrtd_noise_emitted(&with.bars[BAND_LWIR], &p, 290);
+    scene();
+    for (int i = 0; i < width * height; i++) {
+        const int x = i % width, y = i / width;
+        f.id[i] = x >= 20 && x < 32 && y >= 10 && y < 22 ? 2 : 0;
+        /* half of the target 1 K, half 3 K warmer */
+        f.lwir[i] = (float)planck_band(8e-6, 12e-6, f.id[i] ? (x & 1 ? 293 : 291) : 290, NULL);
+    }
+    f.pixels[1] = (TargetPixels){.visible = 144, .amodal = 288, .box = {20, 10, 32, 22}, .occluder = -1};
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &with), 1);
+    const TargetBand *b = &t[0].band[BAND_LWIR];
+    CHECK_NEAR(b->cycles, 12 * 0.5, 1e-9);
+    CHECK_NEAR(b->ttp_v, 12 * acquisition_ttp_px(&curves, &with.bars[BAND_LWIR], sqrt(5)), 1e-3 * b->ttp_v);
+    for (int k = 0; k < acquisition_tasks; k++) {
+        const double half[] = {2, 7.5, 13}, x = b->ttp_v / half[k], power = pow(x, 1.51 + 0.24 * x);
+        CHECK_NEAR(b->p[k], power / (1 + power), 1e-9);
+    }
+    assert_true(b->p[TASK_DETECT] > b->p[TASK_RECOGNISE] && b->p[TASK_RECOGNISE] > b->p[TASK_IDENTIFY]);
+    CHECK(isnan(t[0].band[BAND_MWIR].cycles) && isnan(t[0].band[BAND_OPTICAL].ttp_v));
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+    CHECK(isnan(t[0].band[BAND_LWIR].cycles) && isnan(t[0].band[BAND_LWIR].p[TASK_DETECT])); /* without a sensor */
 }
 
 int main(void)
@@ -271,6 +307,7 @@ int main(void)
         cmocka_unit_test(a_small_target_in_every_band),
         cmocka_unit_test(the_ring_grows_until_it_is_as_large),
         cmocka_unit_test(a_signal_is_known_without_surroundings_and_without_noise),
+        cmocka_unit_test(an_observer_resolves_what_is_visible),
     };
     return cmocka_run_group_tests(tests, open_fixture, close_fixture);
 }

@@ -97,6 +97,6 @@ static inline void scene(void)
     memset(f.id, 0, sizeof f.id);
 }
 
-static const TruthNoise noise = {0.01, 0.03, 0.05};
+static const TruthNoise noise = {.optical_w_m2_sr = 0.01, .netd_mwir_k = 0.03, .netd_lwir_k = 0.05};
 
 #endif

@@ -73,7 +73,7 @@ for wrong in "--size 0x0" "--size 640" "--rate -1" "--set sensor.hfov_deg" "--th
 done
 run
 refused "nothing" '`pitviper --help` lists them'
-for command in run replay frame regress inspect check exercise record model heat rcs terrain probe bench "bench speed" "model info" "terrain import"; do
+for command in run replay frame regress inspect check exercise record model heat range rcs terrain probe bench "bench speed" "model info" "terrain import"; do
     # shellcheck disable=SC2086
     check "$command -h is --help" [ -n "$("$pitviper" $command -h)" -a "$("$pitviper" $command -h)" = "$("$pitviper" $command --help)" ]
     # shellcheck disable=SC2086
