@@ -327,7 +327,7 @@ enum { config_paths_size = 4096 };
     ROW(DOUBLE, terrain., woods_sway, 0, 0, 5, "", \
         "amplitude of the sway of plants in the wind of weather.wind_mps: 1 realistic, 0 none") \
     ROW(SWITCH, terrain., woods_tables, true, "on|off", \
-        "plants lower than 56 .. 88 px in the image are met in tables of what rays meet of their kind; off: " \
+        "plants lower than 84 .. 132 px in the image are met in tables of what rays meet of their kind; off: " \
         "themselves") \
     ROW(DOUBLE, terrain., woods_level1_px, 0, 0, 1000, "px", \
         "plants lower than this in the image are traced with fewer, larger leaves, low ones alone with woods_tables; " \

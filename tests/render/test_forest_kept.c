@@ -73,10 +73,10 @@ static uint64_t fetched(void) { return cache_counters(cache).fetched; }
  * lines; of line 1 the texels that are known, 3 and 64; those that are hits, 3; its texel. */
 static void octets_of_texels(void **state)
 {
-    enum { quads = 5, octets = 3 * 16 + 4 };
+    enum { quads = 5, octets = 3 * 24 + 4 };
     static uint32_t from[way_texels], to[way_texels];
     const uint32_t  hit = (uint32_t)-7 << table_quad_bits | (2 + 4);
-    const uint64_t  word[6] = {2, 0, 8, 1, 8, 0};
+    const uint64_t  word[9] = {2, 0, 0, 8, 1, 0, 8, 0, 0};
     size_t          count = 0;
     (void)state;
     from[table_side + 3] = hit, from[table_side + 64] = table_nothing;
@@ -88,19 +88,19 @@ static void octets_of_texels(void **state)
     free(got);
 }
 
-static bool reads(const uint64_t word[6], uint32_t hit, size_t count)
+static bool reads(const uint64_t word[9], uint32_t hit, size_t count)
 {
     static uint32_t to[way_texels];
-    char            octets[6 * 8 + 8] = {0};
+    char            octets[9 * 8 + 8] = {0};
     memset(to, 0, sizeof to);
-    memcpy(octets, word, 6 * sizeof *word), memcpy(octets + 48, &hit, sizeof hit);
+    memcpy(octets, word, 9 * sizeof *word), memcpy(octets + 72, &hit, sizeof hit);
     return kept_read(kept_texels_values, &(KeptTexels){to, 1, 5, 0}, octets, count);
 }
 
 static void wrong_texels(void **state)
 {
-    enum { whole = 52 };
-    const uint64_t word[6] = {2, 0, 8, 1, 8, 0};
+    enum { whole = 76 };
+    const uint64_t word[9] = {2, 0, 0, 8, 1, 0, 8, 0, 0};
     const uint32_t depth = (uint32_t)table_depth_steps << table_quad_bits, first = 2, last = 6;
     (void)state;
     CHECK(reads(word, depth | first, whole) &&
@@ -111,10 +111,11 @@ static void wrong_texels(void **state)
     CHECK(!reads(word, depth | 1, whole) && !reads(word, 0, whole));                                /* no hit */
     CHECK(!reads(word, ((uint32_t)table_depth_steps + 1) << table_quad_bits | first, whole)); /* outside the sphere */
     CHECK(!reads(word, (uint32_t)(-table_depth_steps - 1) << table_quad_bits | first, whole));
-    CHECK(!reads((const uint64_t[6]){2, 0, 1, 0, 8, 0}, depth | first, whole)); /* a hit that is not known */
-    CHECK(!reads((const uint64_t[6]){2, 0, 1, 0, 0, 8}, depth | first, whole));
-    CHECK(!reads((const uint64_t[6]){2, 0, 0, 0, 0, 0}, 0, 48)); /* a line of nothing known */
-    CHECK(reads((const uint64_t[6]){0, 0, 0, 0, 0, 0}, 0, 16));
+    CHECK(!reads((const uint64_t[9]){2, 0, 0, 1, 0, 0, 8, 0, 0}, depth | first, whole)); /* a hit that is not known */
+    CHECK(!reads((const uint64_t[9]){2, 0, 0, 1, 0, 0, 0, 8, 0}, depth | first, whole));
+    CHECK(!reads((const uint64_t[9]){2, 0, 0, 1, 0, 0, 0, 0, 8}, depth | first, whole));
+    CHECK(!reads((const uint64_t[9]){2}, 0, 72)); /* a line of nothing known */
+    CHECK(reads((const uint64_t[9]){0}, 0, 24));
 }
 
 static void wrong_light(void **state)
@@ -204,19 +205,18 @@ static void written_when_new(void **state)
         CHECK(made() == before + (few ? 0 : 1));
     }
     Forest *f = open_forest("new");
-    trace_way(f, PLANT_PINE, first_way), trace_way(f, PLANT_PINE, first_way + 1),
-        trace_way(f, PLANT_PINE, first_way + 2);
-    forest_kept_after_frame(f); /* 3 x 16384 - 1024, of 65536 */
+    trace_way(f, PLANT_PINE, first_way);
+    forest_kept_after_frame(f); /* 36864 - 1024, of 65536 */
     CHECK(made() == before + 1);
-    trace_way(f, PLANT_PINE, first_way + 3), trace_way(f, PLANT_PINE, first_way + 4);
+    trace_way(f, PLANT_PINE, first_way + 1);
     forest_kept_after_frame(f);
     CHECK(made() == before + 2);
     forest_kept_after_frame(f), forest_keep_found(f);
     CHECK(made() == before + 2);
-    for (int place = 0; place < 2600; place++) plant_table_trace(f->table[PLANT_PINE], first_way + 5, 0, place);
-    forest_keep_found(f); /* 2600 of 84520 are less than a thirty-second part */
+    for (int place = 0; place < 2200; place++) plant_table_trace(f->table[PLANT_PINE], first_way + 5, 0, place);
+    forest_keep_found(f); /* 2200 of 75928 are less than a thirty-second part */
     CHECK(made() == before + 2);
-    for (int place = 2600; place < 2800; place++) plant_table_trace(f->table[PLANT_PINE], first_way + 5, 0, place);
+    for (int place = 2200; place < 2500; place++) plant_table_trace(f->table[PLANT_PINE], first_way + 5, 0, place);
     forest_keep_found(f);
     CHECK(made() == before + 3);
     forest_destroy(f);

@@ -21,7 +21,7 @@ typedef struct Forest Forest;
 
 /* Height in the picture from which a standing plant is met itself where tables are used, least and most: each plant has
  * one of its own, so that a row of trees does not change all at once. */
-static const double forest_table_px[2] = {56, 88};
+static const double forest_table_px[2] = {84, 132};
 static const double forest_table_rad = 0.25; /* and it is never met in a table where it is higher than that */
 
 typedef struct ForestConfig {

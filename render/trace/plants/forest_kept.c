@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { way_texels = table_side * table_side, row_texels = table_azimuths * way_texels };
+enum { way_texels = table_side * table_side, row_texels = table_azimuths * way_texels, words = table_side / 64 };
+_Static_assert(table_side % 64 == 0, "whole words of bits");
 
 struct ForestKept {
     Cache    *cache;
@@ -27,15 +28,28 @@ static bool is_hit(uint32_t texel, int quads)
     return of >= 2 && of < (uint32_t)quads + 2 && depth >= -table_depth_steps && depth <= table_depth_steps;
 }
 
-static inline bool has(const uint64_t set[2], int k) { return set[k >> 6] >> (k & 63) & 1; }
+static inline bool has(const uint64_t set[words], int k) { return set[k >> 6] >> (k & 63) & 1; }
+
+static int count_of(const uint64_t set[words])
+{
+    int count = 0;
+    for (int w = 0; w < words; w++) count += __builtin_popcountll(set[w]);
+    return count;
+}
+
+static bool is_within(const uint64_t set[words], const uint64_t all[words])
+{
+    uint64_t beyond = 0;
+    for (int w = 0; w < words; w++) beyond |= set[w] & ~all[w];
+    return !beyond;
+}
 
 /* Returns how many texels are known. line NULL: what is read is only checked. */
 static uint32_t pass_line(Kept *kept, uint32_t *line, int quads)
 {
-    uint64_t known[2] = {0}, met[2] = {0};
+    uint64_t known[words] = {0}, met[words] = {0};
     uint32_t hit[table_side];
     int      hits = 0;
-    _Static_assert(table_side == 128, "two words of bits");
     for (int x = 0; x < table_side && !kept_is_read(kept); x++) {
         if (line[x] == table_unset) continue;
         known[x >> 6] |= UINT64_C(1) << (x & 63);
@@ -45,8 +59,8 @@ static uint32_t pass_line(Kept *kept, uint32_t *line, int quads)
     }
     kept_pass(kept, known, sizeof known);
     kept_pass(kept, met, sizeof met);
-    kept_check(kept, (known[0] | known[1]) != 0 && !(met[0] & ~known[0]) && !(met[1] & ~known[1]));
-    if (kept_is_read(kept)) hits = __builtin_popcountll(met[0]) + __builtin_popcountll(met[1]);
+    kept_check(kept, count_of(known) > 0 && is_within(met, known));
+    if (kept_is_read(kept)) hits = count_of(met);
     kept_pass(kept, hit, (size_t)hits * sizeof *hit);
     for (int x = 0, k = 0; x < table_side && kept_is_read(kept) && kept->good; x++) {
         if (!has(known, x)) continue;
@@ -54,7 +68,7 @@ static uint32_t pass_line(Kept *kept, uint32_t *line, int quads)
         kept_check(kept, texel == table_nothing || is_hit(texel, quads));
         if (line) __atomic_store_n(&line[x], texel, __ATOMIC_RELAXED);
     }
-    return (uint32_t)(__builtin_popcountll(known[0]) + __builtin_popcountll(known[1]));
+    return (uint32_t)count_of(known);
 }
 
 static bool is_blank(const uint32_t line[table_side])
@@ -69,7 +83,7 @@ void kept_texels_values(Kept *kept, void *user)
     KeptTexels *t = user;
     for (int way = 0; way < t->ways && kept->good; way++) {
         uint32_t *texel = t->texel ? t->texel + (size_t)way * way_texels : NULL;
-        uint64_t  lines[2] = {0};
+        uint64_t  lines[words] = {0};
         for (int y = 0; y < table_side && !kept_is_read(kept); y++)
             if (!is_blank(texel + y * table_side)) lines[y >> 6] |= UINT64_C(1) << (y & 63);
         kept_pass(kept, lines, sizeof lines);

@@ -34,7 +34,7 @@ enum {
     table_azimuths = 32,
     table_elevations = 15,
     table_ways = table_azimuths * table_elevations,
-    table_side = 128, /* texels of the finest level; each further has half of them */
+    table_side = 192, /* texels of the finest level; each further has half of them */
     table_levels = 4,
     /* a texel: what was met. Of a hit: 2 + quad in the lower bits, depth in the upper, signed, in radius /
      * table_depth_steps behind the middle of the prototype's box. */
@@ -60,7 +60,7 @@ typedef struct PlantTable {
     struct ShapeKept *kept;                /* NULL: texels are not kept between runs */
 } PlantTable;
 
-/* Its memory, 41.8 MB, is the machine's only where it is asked for. STATUS_NO_MEMORY; STATUS_UNSUPPORTED: the prototype
+/* Its memory, 94 MB, is the machine's only where it is asked for. STATUS_NO_MEMORY; STATUS_UNSUPPORTED: the prototype
  * has too many quads. */
 Status plant_table_create(PlantTable **out, const ShapeScene *shape);
 void   plant_table_destroy(PlantTable *table); /* accepts NULL */

@@ -31,6 +31,7 @@ typedef struct Flight {
     WoodsBench *w;
     const char *name;      /* of what is judged */
     double      change_px; /* height in the picture just below which every plant is in that representation */
+    double      hfov_rad;
     int         width, height, frames, counted; /* counted: frames so far */
     double      sum[woods_bands][frames_most][FLIGHT_SUMS];
     double      cpu_s[woods_details][frames_most];
@@ -41,7 +42,7 @@ typedef struct Flight {
 static View view_at(const Flight *f, double range_m)
 {
     const double d_enu[3] = {0, cos(down_rad), -sin(down_rad)};
-    View         view = {.width = f->width, .height = f->height, .focal_px = view_focal_px(f->width, hfov_rad)};
+    View         view = {.width = f->width, .height = f->height, .focal_px = view_focal_px(f->width, f->hfov_rad)};
     for (int c = 0; c < 3; c++) view.p_enu[c] = -range_m * d_enu[c];
     view.p_enu[2] += elevation_height(&f->w->landscape.elevation, 0, 0, NULL) + 1;
     view_upright(view.r_enu_from_cam, d_enu);
@@ -186,6 +187,7 @@ static Status fly_and_judge(WoodsBench *w, const char *name, double change_px, b
     Flight     f = {.w = w, .name = name, .change_px = change_px};
     Status     status = STATUS_OK;
     f.width = quick ? 72 : 360, f.height = quick ? 48 : 243, f.frames = quick ? 4 : frames_most;
+    f.hfov_rad = quick ? 0.6 * hfov_rad : hfov_rad; /* so that some plants change their representation */
     bench_progress(w->bench, "flight");
     arena_reset(w->arena[0]);
     for (int k = 0; k < 2 * woods_details && status == STATUS_OK; k++)
