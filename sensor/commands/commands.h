@@ -14,6 +14,9 @@ int replay_command(int argc, char **argv);
 int frame_command(int argc, char **argv);
 /* `pitviper explain OUT FRAME X Y`: what one pixel of a saved frame is made of. */
 int explain_command(int argc, char **argv);
+/* `pitviper regress CASE ...`, `pitviper regress bisect OLD NEW CASE`: recorded exercises against approved baselines.
+ */
+int regress_command(int argc, char **argv);
 /* `pitviper inspect LOG`: entities, their times and events, senders, and malformed PDUs. */
 int inspect_command(int argc, char **argv);
 /* `pitviper check`: validates a settings file before an exercise depends on it. */

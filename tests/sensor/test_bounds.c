@@ -9,7 +9,7 @@
 #include "sensor/commands/commands.h"
 #include "sensor/settings/config_private.h"
 #include "sensor/settings/options.h"
-#include "sensor/verify/regress/case_private.h"
+#include "sensor/verify/regress/case.h"
 
 #define OF_SCENARIO(...) SETTING_ROW(Scenario, __VA_ARGS__)
 #define OF_GROUP(...)    SETTING_ROW(ScenarioGroup, __VA_ARGS__)

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "render/materials/planck.h"
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 /* 2 x 3; differences 0, 0.02, 0.3, -0.4, 0, 0: two of six beyond 0.05. */
 static void shares_and_places_are_counted(void **state)

@@ -1,5 +1,5 @@
 /* sensor/verify/regress/case.c: reads case.yaml: its keys, default tolerances and checks. */
-#include "sensor/verify/regress/case_private.h"
+#include "sensor/verify/regress/case.h"
 
 #include <errno.h>
 #include <stdlib.h>

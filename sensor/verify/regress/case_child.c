@@ -1,5 +1,5 @@
 /* sensor/verify/regress/case_child.c: runs this program as a child process with output in files and a time limit. */
-#include "sensor/verify/regress/regress_private.h"
+#include "sensor/verify/regress/run_case.h"
 #include "pitviper_output.h"
 
 #include "pitviper_file.h"
@@ -25,33 +25,37 @@ bool case_child_add(ChildLine *line, const char *argument)
     return true;
 }
 
-/* Copies the environment of this process, with LC_ALL=C and TZ=UTC. */
-static char **environment(void)
+/* Copies the environment of this process, with LC_ALL=C and TZ=UTC. etc: `PITVIPER_ETC=...`; empty: it is unset; NULL:
+ * as it is. */
+static char **environment(char *etc)
 {
     static char locale[] = "LC_ALL=C", zone[] = "TZ=UTC";
     size_t      count = 0, n = 0;
     while (environ[count]) count++;
-    char **out = calloc(count + 3, sizeof *out);
+    char **out = calloc(count + 4, sizeof *out);
     for (size_t i = 0; out && i < count; i++)
         if (strncmp(environ[i], "LC_", 3) != 0 && strncmp(environ[i], "LANG", 4) != 0 &&
-            strncmp(environ[i], "TZ=", 3) != 0)
+            strncmp(environ[i], "TZ=", 3) != 0 && !(etc && strncmp(environ[i], "PITVIPER_ETC=", 13) == 0))
             out[n++] = environ[i];
     if (out) {
         out[n++] = locale;
-        out[n] = zone;
+        out[n++] = zone;
+        out[n] = etc && *etc ? etc : NULL;
     }
     return out;
 }
 
 static int spawn(pid_t *child, const ChildLine *line, const char *out_path, const char *error_path)
 {
+    char                       etc[case_path_size + 16] = "";
     posix_spawn_file_actions_t files;
     posix_spawnattr_t          how;
     sigset_t                   none, usual;
     const int                  out = output_open(out_path, 0);
     const int                  error = out >= 0 ? output_open(error_path, 0) : -1;
     int                        failure = error < 0 ? errno : 0;
-    char                     **with = failure ? NULL : environment();
+    if (line->tables && *line->tables) snprintf(etc, sizeof etc, "PITVIPER_ETC=%.4095s", line->tables);
+    char **with = failure ? NULL : environment(line->tables ? etc : NULL);
     if (!with) {
         if (out >= 0) close(out);
         if (error >= 0) close(error);
@@ -69,7 +73,8 @@ static int spawn(pid_t *child, const ChildLine *line, const char *out_path, cons
     posix_spawnattr_setpgroup(&how, 0);
     posix_spawnattr_setsigmask(&how, &none);
     posix_spawnattr_setsigdefault(&how, &usual);
-    failure = posix_spawn(child, "/proc/self/exe", &files, &how, (char *const *)line->argument, with);
+    failure = posix_spawn(child, line->program ? line->program : "/proc/self/exe", &files, &how,
+                          (char *const *)line->argument, with);
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&how);
     close(out);
@@ -118,23 +123,29 @@ static bool plain(const char *text)
            strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%") == strlen(text);
 }
 
+/* Appends a word, after `before`. Returns the new length. */
+static size_t put_word(char *out, size_t n, size_t out_size, const char *before, const char *text)
+{
+    if (n + 8 >= out_size) return n;
+    n += (size_t)snprintf(out + n, out_size - n, plain(text) ? "%s" : "%s'", before);
+    if (n + 8 < out_size && plain(text)) return n + strlen(strncat(out + n, text, out_size - n - 1));
+    for (const char *c = text; *c && n + 8 < out_size; c++)
+        n += (size_t)snprintf(out + n, out_size - n, *c == '\'' ? "'\\''" : "%c", *c);
+    return n + (n + 2 < out_size ? (size_t)snprintf(out + n, out_size - n, "'") : 0);
+}
+
 void case_child_text(char *out, size_t out_size, const ChildLine *line)
 {
-    char    self[PATH_MAX];
-    size_t  n = 0;
-    ssize_t got = readlink("/proc/self/exe", self, sizeof self - 1);
+    char          self[PATH_MAX];
+    const ssize_t got = readlink("/proc/self/exe", self, sizeof self - 1);
+    size_t        n = 0;
     self[got > 0 ? got : 0] = 0;
     *out = 0;
-    for (int i = 0; i < line->count && n + 8 < out_size; i++) {
-        const char *text = i == 0 && got > 0 ? self : line->argument[i];
-        if (plain(text)) {
-            n += (size_t)snprintf(out + n, out_size - n, "%s%s", i ? " " : "", text);
-            continue;
-        }
-        n += (size_t)snprintf(out + n, out_size - n, "%s'", i ? " " : "");
-        for (const char *c = text; *c && n + 8 < out_size; c++)
-            n += (size_t)snprintf(out + n, out_size - n, *c == '\'' ? "'\\''" : "%c", *c);
-        n += (size_t)snprintf(out + n, out_size - n, "'");
+    if (line->tables && *line->tables) n = put_word(out, n, out_size, "PITVIPER_ETC=", line->tables);
+    else if (line->tables) n = put_word(out, n, out_size, "env -u ", "PITVIPER_ETC");
+    for (int i = 0; i < line->count; i++) {
+        const char *text = i > 0 ? line->argument[i] : line->program ? line->program : got > 0 ? self : "pitviper";
+        n = put_word(out, n, out_size, n ? " " : "", text);
     }
 }
 

@@ -1,5 +1,5 @@
 /* sensor/verify/regress/case_update.c: approves the output of a run: writes the baseline (record/) and card.md. */
-#include "sensor/verify/regress/regress_private.h"
+#include "sensor/verify/regress/run_case.h"
 #include "pitviper_output.h"
 
 #include "sensor/publish/files/frame_files.h"
@@ -91,6 +91,13 @@ static Status write_products(const CaseResult *r, const char *out, const char *t
     if (status == STATUS_OK) status = copy_file(out, to, "truth.jsonl");
     if (status == STATUS_OK) status = copy_run(out, to, &r->c);
     return status;
+}
+
+Status case_write_record(const CaseResult *r, const char *folder)
+{
+    char out[path_size], date[32];
+    snprintf(out, sizeof out, "%.4080s/out", r->work);
+    return write_products(r, out, folder, date);
 }
 
 /* Reads the present content of card.md from its first entry on. NULL: there is none. */

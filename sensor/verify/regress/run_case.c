@@ -1,5 +1,5 @@
 /* sensor/verify/regress/run_case.c: runs one case: its log, settings and replay, then the comparison or the update. */
-#include "sensor/verify/regress/regress_private.h"
+#include "sensor/verify/regress/run_case.h"
 #include "pitviper_output.h"
 
 #include "sensor/settings/config.h"
@@ -7,6 +7,7 @@
 #include "sensor/node/run/stop.h"
 
 #include <errno.h>
+#include <ftw.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -89,10 +90,10 @@ static bool run_child(CaseResult *r, const ChildLine *line, const char *name)
 }
 
 /* The log of a scenario; false when the case has ended. */
-static bool make_log(char log[path_size], CaseResult *r)
+static bool make_log(char log[path_size], CaseResult *r, const CaseHow *how)
 {
     char        scenario[case_path_size], reason[256], set[sizeof r->c.scenario_set];
-    ChildLine   line = {0};
+    ChildLine   line = {.program = how->generator, .tables = how->tables};
     struct stat there;
     if (!case_path(scenario, reason, &r->c, r->c.scenario)) return end_case(r, CASE_BROKEN, "scenario: %s", reason);
     const bool is_file = stat(scenario, &there) == 0 && S_ISREG(there.st_mode);
@@ -145,12 +146,14 @@ static bool make_paths_absolute(const char *config, const CaseResult *r)
     return ok;
 }
 
-/* config.yaml of the work folder, from `config` of the case; or the file that `config_file` names. */
-static bool find_config(char config[path_size], CaseResult *r)
+/* config.yaml of the work folder, from `config` of the case; the file that `config_file` names; or another's. */
+static bool find_config(char config[path_size], CaseResult *r, const CaseHow *how)
 {
     char path[case_path_size], reason[256];
     *config = 0;
-    if (*r->c.config_file) {
+    if (how->settings) {
+        snprintf(config, path_size, "%s", how->settings);
+    } else if (*r->c.config_file) {
         if (!case_path(path, reason, &r->c, r->c.config_file))
             return end_case(r, CASE_BROKEN, "config_file: %s", reason);
         snprintf(config, path_size, "%s", path);
@@ -171,7 +174,7 @@ static bool replay_case(CaseResult *r, const CaseHow *how, const char *log, cons
 {
     char      out[path_size], only[8 * case_frames_max], threads[16];
     size_t    n = 0;
-    ChildLine line = {0};
+    ChildLine line = {.program = how->program, .tables = how->tables};
     for (int i = 0; i < r->c.frames.count; i++)
         n += (size_t)snprintf(only + n, sizeof only - n, "%s%.0f", i ? "," : "", r->c.frames.number[i]);
     snprintf(out, sizeof out, "%.4080s/out", r->work);
@@ -197,6 +200,7 @@ static bool replay_case(CaseResult *r, const CaseHow *how, const char *log, cons
         case_child_add(&line, config);
     }
     if (r->c.causal) case_child_add(&line, "--causal");
+    if (how->verbose) case_child_add(&line, "--verbose");
     if (how->isa) {
         case_child_add(&line, "--isa");
         case_child_add(&line, how->isa);
@@ -210,7 +214,7 @@ static bool replay_case(CaseResult *r, const CaseHow *how, const char *log, cons
 static bool has_record(CaseResult *r)
 {
     char path[path_size];
-    snprintf(path, sizeof path, "%.4080s/record/run.json", r->c.folder);
+    snprintf(path, sizeof path, "%.4090s/run.json", r->record);
     if (access(path, F_OK) != 0)
         return end_case(r, CASE_NO_RECORD,
                         "no baseline yet: inspect the output, then approve it with `pitviper regress --update %.300s "
@@ -218,7 +222,7 @@ static bool has_record(CaseResult *r)
                         "TEXT`",
                         r->c.folder);
     for (int i = 0; i < r->c.frames.count; i++) {
-        snprintf(path, sizeof path, "%.4000s/record/%06.0f.exr", r->c.folder, r->c.frames.number[i]);
+        snprintf(path, sizeof path, "%.4090s/%06.0f.exr", r->record, r->c.frames.number[i]);
         if (access(path, F_OK) != 0)
             return end_case(r, CASE_BROKEN,
                             "the baseline has no frame %.0f: `pitviper regress --update %.300s --why TEXT` writes "
@@ -230,10 +234,9 @@ static bool has_record(CaseResult *r)
 
 static void compare_case(CaseResult *r)
 {
-    char record[path_size], out[path_size], reason[512];
-    snprintf(record, sizeof record, "%.4080s/record", r->c.folder);
+    char out[path_size], reason[512];
     snprintf(out, sizeof out, "%.4080s/out", r->work);
-    r->compared = verdict_of(&r->verdict, &r->c, record, out) == STATUS_OK;
+    r->compared = verdict_of(&r->verdict, &r->c, r->record, out) == STATUS_OK;
     if (!r->compared) {
         last_error(reason, sizeof reason, r->said);
         end_case(r, CASE_BROKEN, "%s", reason);
@@ -261,15 +264,18 @@ static void run_steps(CaseResult *r, const CaseHow *how)
 {
     char log[path_size], config[path_size];
     if (*r->c.log && !find_log(log, r, how)) return;
-    if (!how->update && !has_record(r)) return;
+    if (how->record) snprintf(r->record, sizeof r->record, "%s", how->record);
+    else snprintf(r->record, sizeof r->record, "%.4080s/record", r->c.folder);
+    if (!how->update && *r->record && !has_record(r)) return;
     if (frame_files_folder(r->work) != STATUS_OK) {
         end_case(r, CASE_BROKEN, "cannot make the folder %.300s; choose another place with --work", r->work);
         return;
     }
-    if (!*r->c.log && !make_log(log, r)) return;
-    if (!find_config(config, r) || !replay_case(r, how, log, config)) return;
+    if (!*r->c.log && !make_log(log, r, how)) return;
+    if (!find_config(config, r, how) || !replay_case(r, how, log, config)) return;
     if (how->update) case_update(r, how->why);
-    else compare_case(r);
+    else if (*r->record) compare_case(r);
+    else r->state = CASE_OK;
 }
 
 void run_case(CaseResult *r, const CaseHow *how)
@@ -284,3 +290,15 @@ void run_case(CaseResult *r, const CaseHow *how)
     case_here = NULL;
     r->seconds = wall_clock_s() - begun_s;
 }
+
+/* ---- folders of its own -------------------------------------------------------------------------- */
+
+static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *where)
+{
+    (void)about;
+    (void)kind;
+    (void)where;
+    return remove(path);
+}
+
+void run_case_remove(const char *folder) { nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS | FTW_MOUNT); }

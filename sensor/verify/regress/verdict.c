@@ -1,5 +1,5 @@
 /* sensor/verify/regress/verdict.c: compares a run with its baseline: sizes, inputs, counters, truth, planes. */
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include <stdarg.h>
 #include <stdlib.h>

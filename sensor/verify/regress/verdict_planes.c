@@ -1,6 +1,6 @@
 /* sensor/verify/regress/verdict_planes.c: the channels of a verdict, and the planes and range profile of a frame
  * compared with those of its baseline. */
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include "sensor/detector/preset.h"
 

@@ -1,12 +1,12 @@
-/* sensor/verify/regress/verdict_private.h: a run's JSON and planes read back, and compared with its baseline, channel
+/* sensor/verify/regress/verdict.h: a run's JSON and planes read back, and compared with its baseline, channel
  * by channel, in the order of the data path: the first that fails is the probable cause of those after it. */
-#ifndef SENSOR_VERIFY_REGRESS_VERDICT_PRIVATE_H
-#define SENSOR_VERIFY_REGRESS_VERDICT_PRIVATE_H
+#ifndef SENSOR_VERIFY_REGRESS_VERDICT_H
+#define SENSOR_VERIFY_REGRESS_VERDICT_H
 
 #include "pitviper.h"
 #include "render/frame/planes.h"
 #include "sensor/frame/field.h"
-#include "sensor/verify/regress/case_private.h"
+#include "sensor/verify/regress/case.h"
 
 /* ---- values of JSON (json_values.c) ---------------------------------------------------------- */
 

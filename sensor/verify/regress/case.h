@@ -1,4 +1,4 @@
-/* sensor/verify/regress/case_private.h: a case of the regression: exercise, settings, frames and tolerances.
+/* sensor/verify/regress/case.h: a case of the regression: exercise, settings, frames and tolerances.
  *
  * A case is a folder:
  *
@@ -25,17 +25,17 @@
  *       lwir_k: 0.05
  *
  * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
- * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/verdict_private.h says;
+ * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/verdict.h says;
  * NNNNNN.profile.exr, a row of range bins; truth.jsonl as the run wrote it, and run.json without times. */
-#ifndef SENSOR_VERIFY_REGRESS_CASE_PRIVATE_H
-#define SENSOR_VERIFY_REGRESS_CASE_PRIVATE_H
+#ifndef SENSOR_VERIFY_REGRESS_CASE_H
+#define SENSOR_VERIFY_REGRESS_CASE_H
 
 #include "pitviper_settings.h"
 
 enum { case_path_size = 4096, case_frames_max = 64 };
 
 /* The keys, as pitviper_settings.h says. The tolerances are below any significance for a user of the products, above
- * the rounding of sensor/verify/regress/verdict_private.h: a value that crosses from one step to the next is still
+ * the rounding of sensor/verify/regress/verdict.h: a value that crosses from one step to the next is still
  * within. No allowance for threads, ISAs and builds, which give the same bits (tests/system/test_determinism*.sh). */
 /* clang-format off */
 #define CASE_TOP(ROW) \
