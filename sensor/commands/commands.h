@@ -17,6 +17,8 @@ int explain_command(int argc, char **argv);
 /* `pitviper regress CASE ...`, `pitviper regress bisect OLD NEW CASE`: recorded exercises against approved baselines.
  */
 int regress_command(int argc, char **argv);
+/* `pitviper score OUT ANSWERS`: a recogniser's answers against the truth of a run. */
+int score_command(int argc, char **argv);
 /* `pitviper inspect LOG`: entities, their times and events, senders, and malformed PDUs. */
 int inspect_command(int argc, char **argv);
 /* `pitviper check`: validates a settings file before an exercise depends on it. */
