@@ -247,7 +247,9 @@ const Reference reference_regress = {
              "truth,\n"
              "help run.json), the latter without threads and timings_ms. NNNNNN.exr has all planes of a frame, "
              "NNNNNN.profile.exr the range\n"
-             "profile, when there is a radar. card.md beside record/ lists when and why it changed.",
+             "profile, when there is a radar; scores.json, when case.yaml has scores, those of the recogniser's answers (`all`, "
+             "`bands`, `ap`, `ap50`).\n"
+             "card.md beside record/ lists when and why it changed.",
     .notation = "`channel frame/NAME`, `header frame/NAME`: of NNNNNN.exr; profile/: of NNNNNN.profile.exr. Coded: a "
                 "count\n"
                 "of steps, less that of the left neighbour, zigzag (0, -1, 1, -2 ... are 0, 1, 2, 3 ...), and again "

@@ -50,9 +50,18 @@ typedef struct CaseHow {
 void run_case(CaseResult *result, const CaseHow *how);
 /* The LogSink of the log lines during a case, with a CaseResult as user. NULL: the default. */
 void run_case_log(void *user, LogLevel level, const char *line); /* a LogSink */
+/* Ends a case with a line; false. Adds to what its processes said. */
+bool run_case_end(CaseResult *result, CaseState state, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void run_case_say(CaseResult *result, const char *text);
 /* Removes a folder and all in it, following no link: called only for one that this process has made by temp_folder, and
  * for those in it. */
 void run_case_remove(const char *folder);
+
+/* ---- a recogniser's answers (case_scores.c) ------------------------------------------------------ */
+
+/* Runs the recogniser of the case, if it names one, scores the answers against the truth of the run, and writes
+ * work/out/scores.json. Nothing without scores in the case. False: it failed, and the result of the case is set. */
+bool case_scores(CaseResult *result);
 
 /* ---- approval of a run as the baseline of its case (case_update.c) ------------------------------- */
 
@@ -116,6 +125,8 @@ enum { child_arguments_max = 640 };
 typedef struct ChildLine {
     const char *program; /* its executable; NULL: this one */
     const char *tables;  /* its PITVIPER_ETC; "": unset; NULL: that of this process */
+    const char *folder;  /* its current folder; NULL: that of this process */
+    bool        apart;   /* a program of others: without network (confine_network) and display */
     int         count;
     const char *argument[child_arguments_max + 1]; /* argument[0]: `pitviper`; ends with NULL. Borrowed */
 } ChildLine;
@@ -129,8 +140,8 @@ typedef struct ChildEnd {
 /* False when there are too many. */
 bool case_child_add(ChildLine *line, const char *argument);
 /* Runs it to its end, in the environment of this process but with LC_ALL=C, TZ=UTC and its tables, standard input
- * empty, its output in two files. In a process group of its own, which is ended as a whole. STATUS_IO, logged, when it
- * cannot be started. */
+ * empty, its output in two files. In a process group of its own, which is ended as a whole, also with what is left of
+ * it behind its first process. STATUS_IO, logged, when it cannot be started. */
 Status case_child_run(ChildEnd *end, const ChildLine *line, const char *out_path, const char *error_path,
                       double timeout_s);
 /* Writes the command line, quoted for a shell. */

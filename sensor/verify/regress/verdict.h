@@ -157,6 +157,7 @@ typedef enum Channel {
     CHANNEL_RADAR,
     CHANNEL_PROFILE,
     CHANNEL_SIGNALS, /* contrast, SNR, intensity of each target: truth.jsonl */
+    CHANNEL_SCORES,  /* detection, false alarms, average precision of a recogniser, which follow from all before */
     CHANNEL_ERROR,   /* the run's estimate of its own error: truth.jsonl */
     CHANNEL_COUNT
 } Channel;
@@ -220,6 +221,9 @@ void verdict_fields(ChannelResult result[CHANNEL_COUNT], int frame, const JsonVa
 /* A line of truth.jsonl. */
 void verdict_truth(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
                    double factor);
+/* scores.json: rates by the case's tolerances, in all bands together and in each. */
+void verdict_scores(ChannelResult *result, const JsonValues *expected, const JsonValues *got,
+                    const Tolerance *tolerance);
 /* run.json: counters. */
 void verdict_counters(ChannelResult result[CHANNEL_COUNT], const JsonValues *expected, const JsonValues *got);
 

@@ -42,6 +42,7 @@ static const struct ChannelRow {
                        "dB", .absolute = LIMIT(radar_db), .as = decibel},
     [CHANNEL_PROFILE] = {"radar profile", "radar power over range, relative to the largest of the baseline", "dB"},
     [CHANNEL_SIGNALS] = {"target signals", "contrast, signal-to-noise ratio and intensity of each target", ""},
+    [CHANNEL_SCORES] = {"scores", "detection rate, false alarms and average precision of a recogniser's answers", ""},
     [CHANNEL_ERROR] = {"error budget", "the run's estimate of its own error", ""},
 };
 
