@@ -16,7 +16,8 @@
 #define OF_SHOT(...)     SETTING_ROW(ScenarioShot, __VA_ARGS__)
 #define OF_CASE(...)     SETTING_ROW(Case, __VA_ARGS__)
 static const Setting scenario_keys[] = {SCENARIO_ROWS(OF_SCENARIO)}, group_keys[] = {SCENARIO_GROUP(OF_GROUP)},
-                     shot_keys[] = {SCENARIO_SHOT(OF_SHOT)}, case_keys[] = {CASE_TOP(OF_CASE) CASE_SCORES(OF_CASE) CASE_TOLERANCE(OF_CASE)};
+                     shot_keys[] = {SCENARIO_SHOT(OF_SHOT)},
+                     case_keys[] = {CASE_TOP(OF_CASE) CASE_SCORES(OF_CASE) CASE_TOLERANCE(OF_CASE)};
 
 /* The program's readers, each with one key: settings that stand at the top of a file or of an option, and items of
  * lists. */
