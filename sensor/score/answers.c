@@ -79,6 +79,7 @@ static Status add(Answers *answers, const Answer *one, const JsonStream *s)
     answers->one[answers->count++] = *one;
     answers->bands |= 1u << one->band;
     answers->lines_of_sight |= one->line_of_sight;
+    answers->tracks |= one->track != 0;
     return STATUS_OK;
 }
 

@@ -56,4 +56,11 @@ static inline bool json_member_entity(uint64_t *out, const json_t *object)
     return true;
 }
 
+/* The same number as text. */
+static inline void json_member_entity_text(char out[dis_id_text_size], uint64_t entity)
+{
+    const DisEntityId id = {(uint16_t)(entity >> 32), (uint16_t)(entity >> 16), (uint16_t)entity};
+    dis_entity_id_text(out, id);
+}
+
 #endif

@@ -38,20 +38,33 @@ static inline void skip_text(Pick *p)
     p->at += p->at < p->end;
 }
 
+static inline bool ends_word(char c)
+{
+    return c == ',' || c == ']' || c == '}' || c == '[' || c == '{' || c == ':' || c == '"' || (c >= 0 && c <= ' ');
+}
+
+/* Goes behind a number or a word. */
+static void skip_word(Pick *p)
+{
+    const char *from = p->at;
+    while (p->at < p->end && !ends_word(*p->at)) p->at++;
+    p->good &= p->at > from;
+}
+
 static void skip_value(Pick *p)
 {
+    if (p->at < p->end && *p->at != '"' && *p->at != '{' && *p->at != '[') {
+        skip_word(p);
+        return;
+    }
     int depth = 0;
-    for (bool begun = false; p->good && p->at < p->end; begun = true) {
-        const char c = *p->at;
-        if (depth == 0 && (c == ',' || c == ']' || c == '}')) {
-            p->good &= begun;
-            return;
-        }
+    do {
+        const char c = p->at < p->end ? *p->at : 0;
+        p->good &= p->at < p->end;
         if (c == '"') skip_text(p);
         else p->at++;
         depth += (c == '{' || c == '[') - (c == '}' || c == ']');
-    }
-    p->good &= depth == 0;
+    } while (p->good && depth > 0);
 }
 
 static bool is_wanted(const Pick *p, const char *key, size_t length)
@@ -95,7 +108,8 @@ static void pick_object(Pick *p, int depth)
         any = true;
         pick_value(p, depth + 1);
     }
-    p->at += p->good;
+    if (!p->good) return; /* there may be no room for ends that the text does not have */
+    p->at++;
     *p->out++ = '}';
 }
 
@@ -109,7 +123,8 @@ static void pick_list(Pick *p, int depth)
         if (!first) *p->out++ = ',', p->at++;
         pick_value(p, depth + 1);
     }
-    p->at += p->good;
+    if (!p->good) return;
+    p->at++;
     *p->out++ = ']';
 }
 

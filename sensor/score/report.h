@@ -3,7 +3,8 @@
 #ifndef SENSOR_SCORE_REPORT_H
 #define SENSOR_SCORE_REPORT_H
 
-#include "render/scene/view.h"
+#include "sensor/score/tracks.h"
+#include "sensor/score/worst.h"
 
 enum {
     score_recognisers_max = 4,
@@ -125,6 +126,8 @@ typedef struct ScoreRecogniser {
     ScoreAges      ages;
     int            points;
     ScorePoint     curve[score_curve_max];
+    TracksScore    tracks; /* sequences 0: no answer has a track */
+    WorstCases     missed, false_alarms;
 } ScoreRecogniser;
 
 typedef struct ScoreReport {

@@ -4,6 +4,7 @@
 #include "sensor/frame/json_object.h"
 #include "sensor/frame/target_record.h"
 #include "sensor/score/report.h"
+#include "sensor/score/track_fields.h"
 
 #define IN_RATES(member)      FIELD_MEMBER(ScoreRates, member)
 #define IN_SHARE(member)      FIELD_MEMBER(ScoreShare, member)
@@ -239,6 +240,12 @@ static json_t *version(FieldAt *at)
     return json_string(PITVIPER_VERSION);
 }
 
+static const void *tracks_of(const void *of)
+{
+    const ScoreRecogniser *r = of;
+    return r->tracks.sequences > 0 ? &r->tracks : NULL;
+}
+
 static const Field errors_rows[] = {
     {"count", "", "", "", "found targets", IN_ERRORS(count)},
     {"mean_px", "px", "image: column, row", "", "mean of the answer's centre less that of the target's amodal box",
@@ -297,6 +304,8 @@ static const Field recogniser_rows[] = {
      FIELD_OBJECT(confusion_rows)},
     {"errors", "", "", "when nothing was found", "centroid and range", .in = errors_of, FIELD_OBJECT(errors_rows)},
     {"ages", "", "", "when no answer has latency_ms", "age of answers", .in = ages_of, FIELD_OBJECT(ages_rows)},
+    {"tracks", "", "", "when no answer has a track", "how the answers' track numbers follow targets", .in = tracks_of,
+     .type = "object", .rows = &score_track_fields},
     {"curve", "", "falling score", "", "precision and recall down to a score, at most 101 points", .item = next_point,
      FIELD_OBJECTS(point_rows)},
 };
