@@ -51,6 +51,12 @@ PYTHON
 check "the settings of the cause" grep -qE 'visibility_m: 5000' "$tmp/page/work/cause1/settings.yaml"
 check "and not the other's" not grep -qE '^ *gain:' "$tmp/page/work/cause1/settings.yaml"
 
+# ---- no more runs --------------------------------------------------------------------------------------------
+bisect "$tmp/old.yaml" "$tmp/new.yaml" "$tmp/case" --runs 1
+check "no more runs: exit code" [ $code = 3 ]
+names "no more runs: what moves it" '^cause, not told further apart: setting weather.visibility_m'
+check "no more runs: what to do" complained 'ended after 1 runs; more are allowed by --runs'
+
 # ---- nothing that moves, nothing that differs ------------------------------------------------------------
 printf 'detector: {gain: 2}\n' >"$tmp/new.yaml"
 echo 'seed: 1' >"$tmp/old.yaml"
@@ -61,10 +67,15 @@ bisect "$tmp/old.yaml" "$tmp/old.yaml" "$tmp/case"
 check "nothing differs: exit code" [ $code = 0 ]
 names "nothing differs: said" ': 0 differences'
 
-# ---- tables: two rows of one, of which one is seen; another table; a remark ---------------------------------
-cp -r etc "$tmp/etc1"
-rm -rf "$tmp/etc1/reference"
-cp -r "$tmp/etc1" "$tmp/etc2"
+# ---- tables: two rows of one, of which one is seen; two other tables; a remark ---------------------------------
+etc=$(realpath etc)
+# fresh: the second folder, as the first, which is etc itself
+fresh() {
+    rm -rf "$tmp/etc2"
+    cp -r etc "$tmp/etc2"
+    rm -rf "$tmp/etc2/reference"
+}
+fresh
 # row TABLE NAME COLUMN VALUE: in the second folder
 row() {
     awk -F, -v OFS=, -v name="$2" -v column="$3" -v value="$4" '
@@ -77,22 +88,23 @@ row() {
 row materials.csv leaf_deciduous rho_mwir 0.2
 row materials.csv snow_fine rho_mwir 0.2
 row effects.csv muzzle_smoke life_s 7
+row radars.csv "$(grep -v '^#' etc/radars.csv | sed -n 2p | cut -d, -f1)" source 'of mine' # which no run reads
 echo '# a remark' >>"$tmp/etc2/heat.csv"
-bisect "$tmp/etc1" "$tmp/etc2" "$tmp/case"
+bisect "$etc" "$tmp/etc2" "$tmp/case"
 check "tables: exit code" [ $code = 1 ]
 names "tables: the row and its cell" '^cause: table materials.csv, line [0-9]+, leaf_deciduous: rho_mwir is 0.2, was 0.1004: mwir: .* at frame 5'
 names "tables: each file alone" '^alone: table effects.csv, 1 row: nothing moves'
 names "tables: each row alone" '^alone: table materials.csv, line [0-9]+, snow_fine: .*: nothing moves'
-names "tables: the rest" '^rest: without it the other 2 do not move mwir'
-causes 1 3
+names "tables: the rest" '^rest: without it the other 3 do not move mwir'
+check "tables: what no run reads is not tried" not grep -q radars.csv "$tmp/said"
+causes 1 4
 
 # ---- a row that needs another: together -------------------------------------------------------------------
-rm -rf "$tmp/etc2"
-cp -r "$tmp/etc1" "$tmp/etc2"
+fresh
 sed -n 's/^leaf_deciduous,/leaf_of_mine,/p' etc/materials.csv >>"$tmp/etc2/materials.csv"
 row materials.csv leaf_of_mine rho_mwir 0.3
 sed -i 's/^scrub, *leaf_deciduous/scrub, leaf_of_mine/' "$tmp/etc2/surfaces.csv"
-bisect "$tmp/etc1" "$tmp/etc2" "$tmp/case"
+bisect "$etc" "$tmp/etc2" "$tmp/case"
 check "together: exit code" [ $code = 1 ]
 names "together: the row" '^cause, only together: table materials.csv, line [0-9]+, leaf_of_mine: is new$'
 names "together: the one that needs it" '^cause, only together: table surfaces.csv, line [0-9]+, scrub: material is leaf_of_mine, was leaf_deciduous$'
@@ -105,7 +117,6 @@ causes 1 2
 program=$(realpath "$pitviper")
 for side in old new; do
     mkdir -p "$tmp/$side/bin" "$tmp/$side/share"
-    cp -r "$tmp/etc1" "$tmp/$side/share/pitviper"
     cat >"$tmp/$side/bin/pitviper" <<SCRIPT
 #!/bin/sh
 export PITVIPER_ETC="\${PITVIPER_ETC:-$tmp/$side/share/pitviper}"
@@ -114,7 +125,8 @@ exec "$program" "\$@"
 SCRIPT
     chmod +x "$tmp/$side/bin/pitviper"
 done
-cp "$tmp/etc2/surfaces.csv" "$tmp/etc2/materials.csv" "$tmp/new/share/pitviper"
+ln -s "$etc" "$tmp/old/share/pitviper"
+ln -s "$tmp/etc2" "$tmp/new/share/pitviper"
 bisect "$tmp/old" "$tmp/new/bin/pitviper" "$tmp/case" --threads 2
 check "programs: exit code" [ $code = 1 ]
 names "programs: what moves" '^moved: (pose|sun): '
@@ -130,16 +142,16 @@ wrong() { # wrong WHAT EXIT MESSAGE ARGUMENTS
     check "$1: exit code" [ $code = "$2" ]
     check "$1: said" complained "$3" || cat "$tmp/stderr"
 }
-wrong "two of other kinds" 2 'is of tables and .* of settings; name two of one kind' "$tmp/etc1" "$tmp/new.yaml" "$tmp/case"
-wrong "what is not there" 2 'nowhere: No such file.*; name a program' "$tmp/nowhere" "$tmp/etc1" "$tmp/case"
-wrong "a folder of something else" 2 'holds neither a program .* nor tables' "$tmp/temporary" "$tmp/etc1" "$tmp/case"
-wrong "a case that is none" 2 'case.yaml; a case is a folder that holds one' "$tmp/etc1" "$tmp/etc2" "$tmp"
-wrong "two arguments" 2 '2 arguments where OLD NEW CASE are three' "$tmp/etc1" "$tmp/etc2"
-wrong "tables of tables" 2 '--old-tables and --new-tables are of programs' "$tmp/etc1" "$tmp/etc2" "$tmp/case" --old-tables "$tmp/etc1"
-wrong "no runs" 2 "--runs: '0' is not a whole number" "$tmp/etc1" "$tmp/etc2" "$tmp/case" --runs 0
+wrong "two of other kinds" 2 'is of tables and .* of settings; name two of one kind' "$etc" "$tmp/new.yaml" "$tmp/case"
+wrong "what is not there" 2 'nowhere: No such file.*; name a program' "$tmp/nowhere" "$etc" "$tmp/case"
+wrong "a folder of something else" 2 'holds neither a program .* nor tables' "$tmp/temporary" "$etc" "$tmp/case"
+wrong "a case that is none" 2 'case.yaml; a case is a folder that holds one' "$etc" "$tmp/etc2" "$tmp"
+wrong "two arguments" 2 '2 arguments where OLD NEW CASE are three' "$etc" "$tmp/etc2"
+wrong "tables of tables" 2 '--old-tables and --new-tables are of programs' "$etc" "$tmp/etc2" "$tmp/case" --old-tables "$etc"
+wrong "no runs" 2 "--runs: '0' is not a whole number" "$etc" "$tmp/etc2" "$tmp/case" --runs 0
 echo 'sensor: {width_px: 7}' >"$tmp/bad.yaml"
 wrong "bad settings" 2 'bad.yaml:1: sensor.width_px' "$tmp/old.yaml" "$tmp/bad.yaml" "$tmp/case"
 rm "$tmp/etc2/materials.csv"
-wrong "NEW that cannot run" 3 'NEW \(.*etc2\) cannot run case: .*materials.csv' "$tmp/etc1" "$tmp/etc2" "$tmp/case"
+wrong "NEW that cannot run" 3 'NEW \(.*etc2\) cannot run case: .*materials.csv' "$etc" "$tmp/etc2" "$tmp/case"
 check "nothing is left over" [ -z "$(ls -A "$tmp/temporary")" ]
 finish

@@ -254,8 +254,9 @@ static bool run_both(int *code, Bisect *b)
     *code = b->new->verdict.first < 0 ? code_still : code_not_known;
     if (b->new->verdict.first < 0) text_print(stdout, "%-24s no channel moves beyond its tolerance\n", b->c.name);
     else
-        log_error("regress: bisect: %s and %s are the same, and yet %s moves: a run is not repeatable", d->old.given,
-                  d->new.given, verdict_channel_name(b->moved));
+        log_error(
+            "regress: bisect: %s and %s have one program and the same tables, and yet %s moves: libraries beside them differ, or a run is not repeatable",
+            d->old.given, d->new.given, verdict_channel_name(b->moved));
     return false;
 }
 

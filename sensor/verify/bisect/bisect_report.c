@@ -190,19 +190,21 @@ static void tell_cause(CauseTold *out, const Bisect *b, const Cause *c)
 
 static void put_line(FILE *to, const void *user) { fprintf(to, "%s\n", (const char *)user); }
 
-static const char *say_approved(const Bisect *b)
+static void say_approved(char out[said_size], const Bisect *b)
 {
-    if (!b->compared_approved) return NULL;
-    return b->approved.first < 0 ? "within tolerance" : b->approved.channel[b->approved.first].line;
+    const int first = b->approved.first;
+    if (first < 0) snprintf(out, said_size, "within tolerance");
+    else snprintf(out, said_size, "%s: %s", verdict_channel_name((Channel)first), b->approved.channel[first].line);
 }
 
 static Status write_json(const Bisect *b, const char *path)
 {
-    char        rest[said_size];
+    char        rest[said_size], approved[said_size];
     BisectTold *t = calloc(1, sizeof *t);
     Status      status = STATUS_NO_MEMORY;
     if (!t) return status;
     say_rest(rest, b);
+    say_approved(approved, b);
     *t = (BisectTold){.name = b->c.name,
                       .old = b->d.old.given,
                       .new = b->d.new.given,
@@ -210,7 +212,7 @@ static Status write_json(const Bisect *b, const char *path)
                       .channel = channel_name(b->new->verdict.first),
                       .line = b->new->line,
                       .rest = b->cause_count ? rest : NULL,
-                      .approved = say_approved(b),
+                      .approved = b->compared_approved ? approved : NULL,
                       .frame = b->new->verdict.first < 0 ? -1 : b->new->verdict.channel[b->new->verdict.first].frame,
                       .differences = b->d.count,
                       .runs = b->runs};
@@ -239,8 +241,8 @@ static void put_causes(FILE *page, const Bisect *b)
     fputs("<table><tr><th>cause</th><th>differences</th><th>what they move</th></tr>\n", page);
     for (int i = 0; i < b->cause_count; i++) {
         const Cause *c = &b->cause[i];
-        fprintf(page, "<tr><td><a href=\"#case%d\">%s %d</a></td><td class=\"bad\">", i + 1,
-                c->size > 1 ? "only together" : "alone", i + 1);
+        fprintf(page, "<tr><td style=\"white-space:nowrap\"><a href=\"#case%d\">%s %d</a></td><td class=\"bad\">",
+                i + 1, c->size > 1 ? "only together" : "alone", i + 1);
         for (int k = 0, n = 0; k < b->d.count; k++) {
             if (!c->in[k]) continue;
             say(said, b, k, level_all);
@@ -276,15 +278,18 @@ static void put_head(FILE *page, const Bisect *b)
 {
     char said[said_size];
     fputs("<p>pitviper " PITVIPER_VERSION ": of two ", page);
-    html_text(page, "%s%s, %s (old) and %s (new), the differences that move the case %s. ",
+    html_text(page, "%s, %s (old) and %s (new), the differences that move the case %s. ",
               b->d.old.kind == SIDE_PROGRAM  ? "programs"
               : b->d.old.kind == SIDE_TABLES ? "folders of tables"
                                              : "files of settings",
-              "", b->d.old.given, b->d.new.given, b->c.name);
-    html_text(page, "%d difference%s, %d runs beside those of old and new, each compared with the run of old.",
-              b->d.count, b->d.count == 1 ? "" : "s", b->runs);
+              b->d.old.given, b->d.new.given, b->c.name);
+    html_text(
+        page,
+        "%d difference%s, %d runs beside those of old and new, each compared with the run of old, which is the baseline in what follows.",
+        b->d.count, b->d.count == 1 ? "" : "s", b->runs);
     fputs("</p>\n<p>", page);
-    if (b->compared_approved) html_text(page, "Old and the approved baseline: %s. ", say_approved(b));
+    say_approved(said, b);
+    if (b->compared_approved) html_text(page, "Old and the approved baseline: %s. ", said);
     html_text(page, "New against old: %s.", b->new->verdict.first < 0 ? "nothing moves" : b->new->line);
     fputs("</p>\n", page);
     if (b->cause_count == 0) return;

@@ -152,24 +152,40 @@ void table_files_free(TableFiles *files)
     *files = (TableFiles){0};
 }
 
+/* The name in the folder of tables of a path as a run said it, whose folders may be links; NULL: it is elsewhere. The
+ * caller frees it. */
+static char *name_in(const char *folder, const char *path)
+{
+    const size_t n = strlen(folder);
+    const char  *slash = strrchr(path, '/');
+    char *above = slash ? strndup(path, (size_t)(slash - path)) : NULL, *real = above ? realpath(above, NULL) : NULL;
+    char *name = NULL;
+    if (real && strncmp(real, folder, n) == 0 && (real[n] == '/' || !real[n]) &&
+        asprintf(&name, "%s%s%s", real[n] ? real + n + 1 : "", real[n] ? "/" : "", slash + 1) < 0)
+        name = NULL;
+    free(above);
+    free(real);
+    return name;
+}
+
 void table_files_note_read(TableFiles *files, const char *folder, const char *stderr_path)
 {
     static const char head[] = "table: ";
     char             *text = NULL;
     size_t            octets;
-    const size_t      n = strlen(folder);
     if (text_read_file(&text, &octets, "regress", stderr_path, file_most) != STATUS_OK) return;
     for (char *line = text, *next; *line; line = next) {
         const size_t length = strcspn(line, "\n");
         next = line + length + (line[length] == '\n');
         line[length] = 0;
-        const char *path = line + strlen(head);
-        if (strncmp(line, head, strlen(head)) != 0 || strncmp(path, folder, n) != 0 || path[n] != '/') continue;
-        for (int i = 0; i < files->count; i++) {
-            const size_t m = strlen(files->file[i].name);
-            if (strncmp(path + n + 1, files->file[i].name, m) == 0 && path[n + 1 + m] == ':')
-                files->file[i].is_read = true;
-        }
+        char *end =
+            strncmp(line, head, strlen(head)) == 0 ? strrchr(line, ':') : NULL; /* behind it the number of rows */
+        if (!end || end < line + strlen(head)) continue;
+        *end = 0;
+        char      *name = name_in(folder, line + strlen(head));
+        TableFile *file = name ? find_file(files, name) : NULL;
+        if (file) file->is_read = true;
+        free(name);
     }
     free(text);
 }
