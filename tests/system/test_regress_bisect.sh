@@ -142,7 +142,7 @@ wrong() { # wrong WHAT EXIT MESSAGE ARGUMENTS
     check "$1: exit code" [ $code = "$2" ]
     check "$1: said" complained "$3" || cat "$tmp/stderr"
 }
-wrong "two of other kinds" 2 'is of tables and .* of settings; name two of one kind' "$etc" "$tmp/new.yaml" "$tmp/case"
+wrong "two of other kinds" 2 'are not of one kind: tables, settings; name two of one' "$etc" "$tmp/new.yaml" "$tmp/case"
 wrong "what is not there" 2 'nowhere: No such file.*; name a program' "$tmp/nowhere" "$etc" "$tmp/case"
 wrong "a folder of something else" 2 'holds neither a program .* nor tables' "$tmp/temporary" "$etc" "$tmp/case"
 wrong "a case that is none" 2 'case.yaml; a case is a folder that holds one' "$etc" "$tmp/etc2" "$tmp"
@@ -153,5 +153,11 @@ echo 'sensor: {width_px: 7}' >"$tmp/bad.yaml"
 wrong "bad settings" 2 'bad.yaml:1: sensor.width_px' "$tmp/old.yaml" "$tmp/bad.yaml" "$tmp/case"
 rm "$tmp/etc2/materials.csv"
 wrong "NEW that cannot run" 3 'NEW \(.*etc2\) cannot run case: .*materials.csv' "$etc" "$tmp/etc2" "$tmp/case"
+TMPDIR=$tmp/temporary "$pitviper" regress bisect "$tmp/old.yaml" "$tmp/new.yaml" "$tmp/case" >"$tmp/stdout" 2>"$tmp/stderr" &
+stopped=$!
+until_true quiet ls "$tmp"/temporary/*/old/exercise.stdout || fail "no run of OLD"
+kill -INT $stopped
+wait $stopped
+check "stopped: exit code" [ $? = 130 ]
 check "nothing is left over" [ -z "$(ls -A "$tmp/temporary")" ]
 finish

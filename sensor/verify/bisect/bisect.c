@@ -119,8 +119,8 @@ static Status open_sides(Bisect *b, const Options *o)
     Status       status = side_open(&d->old, o->old, o->old_tables);
     if (status == STATUS_OK) status = side_open(&d->new, o->new, o->new_tables);
     if (status == STATUS_OK && d->old.kind != d->new.kind) {
-        log_error("regress: bisect: %s is of %s and %s of %s; name two of one kind", o->old,
-                  side_kind_name(d->old.kind), o->new, side_kind_name(d->new.kind));
+        log_error("regress: bisect: %s and %s are not of one kind: %s, %s; name two of one", o->old, o->new,
+                  side_kind_name(d->old.kind), side_kind_name(d->new.kind));
         status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK && d->old.kind != SIDE_PROGRAM && (o->old_tables || o->new_tables)) {

@@ -32,7 +32,7 @@ typedef struct Side {
 Status side_open(Side *out, const char *given, const char *tables);
 /* The tables of a program, from what its verbose replay said in this file. STATUS_BAD_VALUE, logged. */
 Status side_find_tables(Side *side, const char *stderr_path, const char *option);
-/* "program ", "tables ", "settings ". */
+/* "programs", "tables", "settings". */
 const char *side_kind_name(SideKind kind);
 
 /* ---- files of tables (table_files.c) --------------------------------------------------------------- */

@@ -9,7 +9,7 @@
 
 const char *side_kind_name(SideKind kind)
 {
-    static const char *const names[] = {"program", "tables", "settings"};
+    static const char *const names[] = {"programs", "tables", "settings"};
     return names[kind];
 }
 
