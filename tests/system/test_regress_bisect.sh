@@ -155,7 +155,8 @@ rm "$tmp/etc2/materials.csv"
 wrong "NEW that cannot run" 3 'NEW \(.*etc2\) cannot run case: .*materials.csv' "$etc" "$tmp/etc2" "$tmp/case"
 TMPDIR=$tmp/temporary "$pitviper" regress bisect "$tmp/old.yaml" "$tmp/new.yaml" "$tmp/case" >"$tmp/stdout" 2>"$tmp/stderr" &
 stopped=$!
-until_true quiet ls "$tmp"/temporary/*/old/exercise.stdout || fail "no run of OLD"
+running() { [ -n "$(find "$tmp/temporary" -name exercise.stdout)" ]; }
+until_true running || fail "no run of OLD"
 kill -INT $stopped
 wait $stopped
 check "stopped: exit code" [ $? = 130 ]
