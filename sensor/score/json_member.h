@@ -6,6 +6,15 @@
 #include "render/scene/view.h"
 #include "sensor/frame/json_object.h"
 
+/* Parses a piece. STATUS_BAD_VALUE, not logged: it is not JSON; STATUS_NO_MEMORY. *out is then NULL. */
+static inline Status json_member_load(json_t **out, const char *text, size_t length)
+{
+    json_error_t error;
+    *out = json_loadb(text, length, 0, &error);
+    if (*out) return STATUS_OK;
+    return json_error_code(&error) == json_error_out_of_memory ? STATUS_NO_MEMORY : STATUS_BAD_VALUE;
+}
+
 /* A finite number; NaN: absent, null or none. */
 static inline double json_member_number(const json_t *object, const char *key)
 {

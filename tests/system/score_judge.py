@@ -2,8 +2,10 @@
 
     score_judge.py counts SCORE EXPECTED      the counts that answers were made for (score_folder.py), exactly
     score_judge.py coco-make FOLDER SEED      truth.jsonl, coco.json and results.json of random boxes
-    score_judge.py coco SCORE COCO RESULTS    average precision as pycocotools has it, to 1e-9"""
-import contextlib, io, json, math, random, sys
+    score_judge.py coco-sweep FOLDER SEED     the same of two variants: manifest.jsonl, one coco.json of both, one results.json
+    score_judge.py coco SCORE COCO RESULTS    average precision as pycocotools has it, to 1e-9
+    score_judge.py coco-of FOLDER             made.json and results.json of truth.jsonl and answers.jsonl, where there is no coco.json"""
+import contextlib, io, json, math, os, random, sys
 
 wrong = []
 def same(what, got, want, within=0.0):
@@ -67,13 +69,57 @@ def coco_make(folder, seed):
                         s = r.choice([0, 0.02, 0.1, 0.25])
                         results.append({"image_id": image, "category_id": ids[r.choice([kind, kind, kind, r.choice(classes)])],
                                         "bbox": [x + s * w, y - s * h, w, h], "score": r.randrange(0, 40) / 40})
-                for k in range(r.choice([0, 1, 3, 130 if frame == 7 else 0])):
+                    if w % 3 == 0: # an IoU of one half, exactly
+                        results.append({"image_id": image, "category_id": ids[kind], "bbox": [x + w // 3, y, w, h], "score": r.randrange(0, 40) / 40})
+                for k in range(r.choice([0, 1, 3])):
                     results.append({"image_id": image, "category_id": r.choice(list(ids.values()) + [5]), "bbox": box(), "score": r.randrange(0, 40) / 40})
+                if frame % 9 == 7: # more than a hundred of a class, of which the last are right
+                    results += [{"image_id": image, "category_id": 1, "bbox": box(), "score": 1.0} for k in range(97)]
+                    results += [{"image_id": image, "category_id": 1, "bbox": b, "score": 0.99 - 0.01 * k} for k, (_, _, b) in enumerate(places)]
     # where scores are equal pycocotools goes by the order in the file; `score` by what the answers say
     results.sort(key=lambda a: (a["image_id"], -a["score"], a["bbox"], a["category_id"]))
     names = json.load(open(sys.argv[4])) if len(sys.argv) > 4 else {}
     json.dump({"images": images, "annotations": annotations, "categories": [{"id": i, "name": names.get(str(i), str(i))} for i in sorted(set(ids.values()) | {5})],
                "info": {}}, open(f"{folder}/coco.json", "w"))
+    json.dump(results, open(f"{folder}/results.json", "w"))
+
+def coco_sweep(folder, seed):
+    images, annotations, results = [], [], []
+    with open(f"{folder}/manifest.jsonl", "w") as manifest:
+        for v in ("va", "vb"):
+            os.makedirs(f"{folder}/{v}")
+            coco_make(f"{folder}/{v}", seed + len(images))
+            one, new = json.load(open(f"{folder}/{v}/coco.json")), {}
+            for i in one["images"]:
+                new[i["id"]] = len(images) + 1
+                images.append(i | {"id": len(images) + 1, "variant": v})
+            for a in one["annotations"]: annotations.append(a | {"id": len(annotations) + 1, "image_id": new[a["image_id"]]})
+            for a in json.load(open(f"{folder}/{v}/results.json")): results.append(a | {"image_id": new[a["image_id"]]})
+            manifest.write(json.dumps({"folder": v, "status": "kept"}) + "\n")
+    json.dump({"images": images, "annotations": annotations, "categories": one["categories"], "info": {}}, open(f"{folder}/coco.json", "w"))
+    json.dump(results, open(f"{folder}/results.json", "w"))
+
+def coco_of(folder):
+    ids, bands = {"tank": 1, "truck": 9}, ("optical", "mwir", "lwir", "radar")
+    images, annotations, results = [], [], []
+    for line in open(f"{folder}/truth.jsonl"):
+        frame = json.loads(line)
+        for band in frame["sensors"][0]["bands"]:
+            image = 4 * frame["frame"] + bands.index(band) + 1
+            images.append({"id": image, "band": band})
+            for t in frame["targets"]:
+                if "box_px" not in t: continue
+                x0, y0, x1, y1 = t["box_px"]
+                annotations.append({"id": len(annotations) + 1, "image_id": image, "category_id": ids[t["class"]], "bbox": [x0, y0, x1 - x0, y1 - y0],
+                                    "area": t["pixels"], "iscrowd": int(t["pixels"] < 5)})
+    for a in map(json.loads, open(f"{folder}/answers.jsonl")):
+        if a.get("class") not in ids: continue
+        x0, y0, x1, y1 = a["box_px"]
+        results.append({"image_id": 4 * a["frame"] + bands.index(a["band"]) + 1, "category_id": ids[a["class"]], "score": a["score"],
+                        "bbox": [x0, y0, x1 - x0, y1 - y0]})
+    results.sort(key=lambda a: (a["image_id"], -a["score"], a["bbox"], a["category_id"]))
+    json.dump({"images": images, "annotations": annotations, "categories": [{"id": i, "name": n} for n, i in ids.items()], "info": {}},
+              open(f"{folder}/made.json", "w"))
     json.dump(results, open(f"{folder}/results.json", "w"))
 
 def coco(score, truth, results):
@@ -106,6 +152,7 @@ def coco(score, truth, results):
     print(compared, "average precisions compared")
     if compared < 6: wrong.append("too few were compared")
 
-{"counts": counts, "coco-make": lambda folder, seed, *_: coco_make(folder, int(seed)), "coco": coco}[sys.argv[1]](*sys.argv[2:])
+{"counts": counts, "coco-make": lambda folder, seed, *_: coco_make(folder, int(seed)), "coco": coco, "coco-of": coco_of,
+ "coco-sweep": lambda folder, seed: coco_sweep(folder, int(seed))}[sys.argv[1]](*sys.argv[2:])
 for line in wrong[:20]: print("FAILED:", line)
 sys.exit(bool(wrong))
