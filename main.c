@@ -6,7 +6,6 @@
 #include "sensor/commands/program.h"
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
-#include "sensor/verify/regress/regress.h"
 #include "sensor/settings/config.h"
 #include "sensor/settings/command_line.h"
 #include "terrain/probe.h"

@@ -14,6 +14,9 @@ int replay_command(int argc, char **argv);
 int frame_command(int argc, char **argv);
 /* `pitviper explain OUT FRAME X Y`: what one pixel of a saved frame is made of. */
 int explain_command(int argc, char **argv);
+/* `pitviper regress CASE ...`, `pitviper regress bisect OLD NEW CASE`: recorded exercises against approved baselines.
+ */
+int regress_command(int argc, char **argv);
 /* `pitviper score OUT ANSWERS`: a recogniser's answers against the truth of a run. */
 int score_command(int argc, char **argv);
 /* `pitviper inspect LOG`: entities, their times and events, senders, and malformed PDUs. */

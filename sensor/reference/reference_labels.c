@@ -243,11 +243,14 @@ const Reference reference_regress = {
     .topic = "regress-record",
     .file = "CASE/record/",
     .title = "the baseline of a case of `pitviper regress`: NNNNNN.exr, NNNNNN.profile.exr, truth.jsonl, run.json",
-    .about = "Written by `pitviper regress --update`. truth.jsonl and run.json are those of the approved run (help "
-             "truth,\n"
-             "help run.json), the latter without threads and timings_ms. NNNNNN.exr has all planes of a frame, "
-             "NNNNNN.profile.exr the range\n"
-             "profile, when there is a radar. card.md beside record/ lists when and why it changed.",
+    .about =
+        "Written by `pitviper regress --update`. truth.jsonl and run.json are those of the approved run (help "
+        "truth,\n"
+        "help run.json), the latter without threads and timings_ms. NNNNNN.exr has all planes of a frame, "
+        "NNNNNN.profile.exr the range\n"
+        "profile, when there is a radar; scores.json, when case.yaml has scores, those of the recogniser's answers (`all`, "
+        "`bands`, `ap`, `ap50`).\n"
+        "card.md beside record/ lists when and why it changed.",
     .notation = "`channel frame/NAME`, `header frame/NAME`: of NNNNNN.exr; profile/: of NNNNNN.profile.exr. Coded: a "
                 "count\n"
                 "of steps, less that of the left neighbour, zigzag (0, -1, 1, -2 ... are 0, 1, 2, 3 ...), and again "

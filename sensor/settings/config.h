@@ -49,6 +49,8 @@ Status config_read(Config *config, const char *path);
 Status config_read_checked(Config *config, const char *path);
 /* The same as config_read; paths in it are relative to the folder of `file`. */
 Status config_read_as(Config *config, const char *path, const char *file);
+/* The same of a text; file: where it is from, for messages, and for paths in it. */
+Status config_parse(Config *config, const char *text, const char *file);
 /* Sets one key as the command line does: `sensor.width_px`, `720`. source: where it comes from, for messages. */
 Status config_set(Config *config, const char *key, const char *value, const char *source);
 /* The same for a value from that file: paths are relative to its folder. NULL: to the current one. */
@@ -90,6 +92,16 @@ void config_text(char *out, size_t out_size, const Config *config);
  * `weather.`; with - before it: left out again. Nothing is given (config_given) in it: what is made by it follows from
  * these keys alone. */
 void config_part(Config *out, const Config *from, const char *words);
+
+/* ---- key by key (config_keys.c) --------------------------------------------------------------------- */
+
+enum { config_value_size = 8192 };
+int         config_keys(void);     /* how many there are */
+const char *config_key(int index); /* 0 .. config_keys() - 1, in table order */
+/* The value as text, numbers with six digits or as many as they need; paths are absolute. */
+void config_value(char out[config_value_size], const Config *config, int index);
+/* The value of one key, and whether it was given, from another configuration. */
+void config_take(Config *config, const Config *from, int index);
 
 /* ---- settings whose text has a grammar --------------------------------------------------------------- */
 

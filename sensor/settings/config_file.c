@@ -122,6 +122,14 @@ Status config_read_as(Config *config, const char *path, const char *file)
     return STATUS_OK;
 }
 
+Status config_parse(Config *config, const char *text, const char *file)
+{
+    Config       filled = *config;
+    const Status status = settings_parse(&filled, filled.given, &config_table, file, text, strlen(text));
+    if (status == STATUS_OK) *config = filled;
+    return status;
+}
+
 Status config_read_checked(Config *config, const char *path)
 {
     Status status = settings_read_as(config, config->given, &config_table, path, path);

@@ -1,7 +1,7 @@
 /* tests/fuzz/fuzz_case.c: any octets as a case.yaml. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "sensor/verify/regress/case_private.h"
+#include "sensor/verify/regress/case.h"
 
 #include <stdlib.h>
 

@@ -51,8 +51,8 @@ WRITERS = ('pitviper_output.c', 'pitviper_confine.c', 'sensor/publish/memory/mem
 # cells one by one.
 CELLS = re.compile(r'\b(?:text_split|table_open|table_column|table_number|table_text)\s*\(|'
                    r'\b(?:strtok(?:_r)?|strsep|strchr|strcspn|strpbrk)\s*\([^;()\n]*,\s*(?:"(?:[^"\n\\]|\\.)*,(?:[^"\n\\]|\\.)*"|\',\')\s*[,)]')
-# Who else: lines before the header, places instead of names, codes for what is missing (EPW, TMY3); lists of words in one value.
-SPLITTERS = ('terrain/weather/weather_file.c', 'entities/import/gltf_document.c', 'sensor/settings/*', 'sensor/verify/regress/record_frame.c',
+# Who else: lines before the header, places instead of names, codes for what is missing (EPW, TMY3); lists of words in one value; rows of any table.
+SPLITTERS = ('terrain/weather/weather_file.c', 'entities/import/gltf_document.c', 'sensor/settings/*', 'sensor/verify/regress/record_frame.c', 'sensor/verify/bisect/row_changes.c',
              'terrain/elevation/reader/reader_set.c', 'terrain/import/terrain_*.c')
 
 # Includes from one wing into another that are left out when circles between wings are looked for, with the reason.

@@ -9,14 +9,15 @@
 #include "sensor/commands/commands.h"
 #include "sensor/settings/config_private.h"
 #include "sensor/settings/options.h"
-#include "sensor/verify/regress/case_private.h"
+#include "sensor/verify/regress/case.h"
 
 #define OF_SCENARIO(...) SETTING_ROW(Scenario, __VA_ARGS__)
 #define OF_GROUP(...)    SETTING_ROW(ScenarioGroup, __VA_ARGS__)
 #define OF_SHOT(...)     SETTING_ROW(ScenarioShot, __VA_ARGS__)
 #define OF_CASE(...)     SETTING_ROW(Case, __VA_ARGS__)
 static const Setting scenario_keys[] = {SCENARIO_ROWS(OF_SCENARIO)}, group_keys[] = {SCENARIO_GROUP(OF_GROUP)},
-                     shot_keys[] = {SCENARIO_SHOT(OF_SHOT)}, case_keys[] = {CASE_TOP(OF_CASE) CASE_TOLERANCE(OF_CASE)};
+                     shot_keys[] = {SCENARIO_SHOT(OF_SHOT)},
+                     case_keys[] = {CASE_TOP(OF_CASE) CASE_SCORES(OF_CASE) CASE_TOLERANCE(OF_CASE)};
 
 /* The program's readers, each with one key: settings that stand at the top of a file or of an option, and items of
  * lists. */

@@ -5,7 +5,7 @@
 #include "sensor/frame/json_object.h"
 #include "sensor/frame/record_fields.h"
 #include "sensor/reference/reference.h"
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include <stdlib.h>
 

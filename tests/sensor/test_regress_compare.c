@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "render/materials/planck.h"
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 /* 2 x 3; differences 0, 0.02, 0.3, -0.4, 0, 0: two of six beyond 0.05. */
 static void shares_and_places_are_counted(void **state)
@@ -372,9 +372,55 @@ static void materials_are_compared_by_name(void **state)
     CHECK(record_frame_rename_materials(&run, &record) == STATUS_OK && was[3] == 3);
 }
 
+/* Two of three found in one band; rates against each other by the case's tolerances. */
+static void scores_are_compared_in_all_bands_and_in_each(void **state)
+{
+    (void)state;
+    static const char was_text[] =
+        "{\"ap\":0.5,\"all\":{\"chances\":4,\"found\":3,\"detection\":0.75,\"detection_low\":0.3,"
+        "\"detection_high\":0.95,\"frames\":2,\"false_alarms\":1,\"false_alarms_per_frame\":0.5},"
+        "\"bands\":{\"lwir\":{\"detection\":1},\"mwir\":{\"detection\":0.5}}}";
+    static const char is_text[] =
+        "{\"ap\":0.45,\"all\":{\"chances\":4,\"found\":3,\"detection\":0.75,\"frames\":2,\"false_alarms\":1,"
+        "\"false_alarms_per_frame\":0.5},\"bands\":{\"lwir\":{\"detection\":0.5},\"mwir\":{\"detection\":1}}}";
+    static const char one_band[] = "{\"all\":{\"detection\":0.75,\"false_alarms_per_frame\":0.5},\"ap\":0.5,"
+                                   "\"bands\":{\"lwir\":{\"detection\":1}}}";
+    JsonValues        was, is, one;
+    Tolerance         tolerance = case_default().tolerance;
+    CHECK(json_values_read(&was, was_text, strlen(was_text), "test", "was") == STATUS_OK);
+    CHECK(json_values_read(&is, is_text, strlen(is_text), "test", "is") == STATUS_OK);
+    CHECK(json_values_read(&one, one_band, strlen(one_band), "test", "one") == STATUS_OK);
+    ChannelResult same = {0}, other = {0}, wide = {0}, gone = {0}, come = {0};
+    verdict_scores(&same, &was, &was, &tolerance);
+    CHECK(same.there && !same.failed);
+    assert_string_equal(same.line,
+                        "detection rate 0.75 (0.3 .. 0.95; 3 of 4 targets), false alarms per frame 0.5 (1 of "
+                        "2 frames), AP 0.5");
+    verdict_scores(&other, &was, &is, &tolerance);
+    CHECK(other.failed && other.diffs == 3); /* AP, lwir, mwir */
+    assert_string_equal(other.line, "AP 0.45, was 0.5");
+    tolerance.ap = 0.05;
+    other = (ChannelResult){0};
+    verdict_scores(&other, &was, &is, &tolerance);
+    CHECK(other.failed && other.diffs == 2);
+    assert_string_equal(other.line, "lwir: detection rate 0.5, was 1");
+    tolerance.detection = 0.5;
+    verdict_scores(&wide, &was, &is, &tolerance);
+    CHECK(wide.there && !wide.failed);
+    verdict_scores(&gone, &was, &one, &tolerance); /* a band that is no longer answered differs by any tolerance */
+    CHECK(gone.failed && gone.diffs == 1);
+    assert_string_equal(gone.line, "mwir: detection rate none, was 0.5");
+    verdict_scores(&come, &one, &was, &tolerance);
+    CHECK(come.failed && come.diffs == 1);
+    json_values_free(&was);
+    json_values_free(&is);
+    json_values_free(&one);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scores_are_compared_in_all_bands_and_in_each),
         cmocka_unit_test(materials_are_compared_by_name),
         cmocka_unit_test(shares_and_places_are_counted),
         cmocka_unit_test(what_is_not_finite_is_equal_only_to_itself),

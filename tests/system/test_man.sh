@@ -21,6 +21,9 @@ for command in $("$pitviper" --help | sed -nE 's/^  ([a-z]+) +.*/\1/p'); do
         check "$command $option" grep -qF -e "${option//-/\\-}" "$tmp/pitviper.1"
     done
 done
+for option in $("$pitviper" regress bisect --help | grep -oE '^ +--[a-z-]+'); do
+    check "regress bisect $option" grep -qF -e "${option//-/\\-}" "$tmp/pitviper.1"
+done
 for topic in $("$pitviper" help | sed -n '/^products /p'); do
     check "the topic $topic" grep -qx "\.SS ${topic//-/\\\\-}" "$tmp/pitviper.1"
 done

@@ -1,5 +1,5 @@
 /* sensor/verify/regress/case.c: reads case.yaml: its keys, default tolerances and checks. */
-#include "sensor/verify/regress/case_private.h"
+#include "sensor/verify/regress/case.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -7,11 +7,14 @@
 
 #define CASE_ROW(...) SETTING_ROW(Case, __VA_ARGS__)
 
-static const Setting      keys[] = {CASE_TOP(CASE_ROW) CASE_TOLERANCE(CASE_ROW)};
+static const Setting      keys[] = {CASE_TOP(CASE_ROW) CASE_SCORES(CASE_ROW) CASE_TOLERANCE(CASE_ROW)};
 static const SettingTable table = {
     .module = "regress", .row = keys, .count = sizeof keys / sizeof *keys, .all_keys = "`pitviper regress --keys`"};
 
-Case case_default(void) { return (Case){CASE_TOP(SETTING_DEFAULT) CASE_TOLERANCE(SETTING_DEFAULT)}; }
+Case case_default(void)
+{
+    return (Case){CASE_TOP(SETTING_DEFAULT) CASE_SCORES(SETTING_DEFAULT) CASE_TOLERANCE(SETTING_DEFAULT)};
+}
 
 /* Checks that involve several keys. */
 static Status check(const Case *c, const char *path)
@@ -27,6 +30,8 @@ static Status check(const Case *c, const char *path)
         wrong = "scenario_set: applies to a scenario, and a log is given; leave it "
                 "out";
     else if (*c->config && *c->config_file) wrong = "config: and config_file: are both given; leave one out";
+    else if (*c->scores.command && *c->scores.answers)
+        wrong = "scores.command: and scores.answers: are both given; leave one out";
     else if (c->frames.count == 0) wrong = "frames: is missing; list the frames to compare, such as [3, 7, 12]";
     else if (c->frames.count > case_frames_max) wrong = "frames: more than 64; a baseline is kept small";
     for (int i = 0; !wrong && i < c->frames.count; i++) {
@@ -130,6 +135,8 @@ static Status replace_folder(char **text, const char *from, const char *to)
     *text = made;
     return STATUS_OK;
 }
+
+bool case_has_scores(const Case *c) { return *c->scores.command || *c->scores.answers; }
 
 Status case_relative(char **text, const Case *c)
 {

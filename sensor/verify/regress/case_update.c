@@ -1,5 +1,5 @@
 /* sensor/verify/regress/case_update.c: approves the output of a run: writes the baseline (record/) and card.md. */
-#include "sensor/verify/regress/regress_private.h"
+#include "sensor/verify/regress/run_case.h"
 #include "pitviper_output.h"
 
 #include "sensor/publish/files/frame_files.h"
@@ -52,10 +52,12 @@ static Status copy_run(const char *from_folder, const char *to_folder, const Cas
     return status;
 }
 
-/* NNNNNN.exr, NNNNNN.profile.exr, truth.jsonl, run.json: the files of a baseline. */
+/* NNNNNN.exr, NNNNNN.profile.exr, truth.jsonl, run.json, scores.json: the files of a baseline. */
 static bool is_of_record(const char *name)
 {
-    if (strcmp(name, "truth.jsonl") == 0 || strcmp(name, "run.json") == 0) return true;
+    static const char *const json[] = {"truth.jsonl", "run.json", "scores.json"};
+    for (int i = 0; i < 3; i++)
+        if (strcmp(name, json[i]) == 0) return true;
     for (int i = 0; i < 6; i++)
         if (name[i] < '0' || name[i] > '9') return false;
     return strcmp(name + 6, ".exr") == 0 || strcmp(name + 6, ".profile.exr") == 0;
@@ -89,8 +91,16 @@ static Status write_products(const CaseResult *r, const char *out, const char *t
         record_frame_free(&frame);
     }
     if (status == STATUS_OK) status = copy_file(out, to, "truth.jsonl");
+    if (status == STATUS_OK && case_has_scores(&r->c)) status = copy_file(out, to, "scores.json");
     if (status == STATUS_OK) status = copy_run(out, to, &r->c);
     return status;
+}
+
+Status case_write_record(const CaseResult *r, const char *folder)
+{
+    char out[path_size], date[32];
+    snprintf(out, sizeof out, "%.4080s/out", r->work);
+    return write_products(r, out, folder, date);
 }
 
 /* Reads the present content of card.md from its first entry on. NULL: there is none. */

@@ -1,5 +1,5 @@
 /* sensor/verify/regress/false_colour.c: planes as false-colour PNGs in an HTML page, with a colour scale. */
-#include "sensor/verify/regress/regress_private.h"
+#include "sensor/verify/regress/run_case.h"
 
 #include "sensor/publish/files/html_page.h"
 

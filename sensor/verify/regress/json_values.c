@@ -1,5 +1,5 @@
 /* sensor/verify/regress/json_values.c: JSON read into a flat list of paths and values. */
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include "sensor/frame/json_object.h"
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* sensor/verify/regress/plane_compare.c: pixel-wise comparison of planes of numbers and of ids. */
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include "render/materials/planck.h"
 

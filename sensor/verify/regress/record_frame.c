@@ -1,7 +1,7 @@
 /* sensor/verify/regress/record_frame.c: reads the planes of a frame from a run and from a baseline, and writes the
  * latter. */
 #include "pitviper_table.h"
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include "sensor/publish/images/image_file.h"
 

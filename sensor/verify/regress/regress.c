@@ -6,12 +6,11 @@
 #include "sensor/node/run/stop.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/publish/images/image_file.h"
-#include "sensor/verify/regress/regress_private.h"
+#include "sensor/verify/regress/run_case.h"
 #include "sensor/settings/command_line.h"
 
 #include <dirent.h>
 #include <errno.h>
-#include <ftw.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -22,6 +21,7 @@ enum { cases_max = 4096 };
 static const char help[] =
     "usage: pitviper regress CASE ... [options]\n"
     "       pitviper regress --update CASE ... --why TEXT [options]\n"
+    "       pitviper regress bisect OLD NEW CASE [options]\n"
     "\n"
     "Re-renders recorded exercises and compares images, truth and counters with approved baselines. CASE is a folder "
     "with\n"
@@ -40,18 +40,22 @@ static const char help[] =
     "  --keys               print every key of case.yaml, with its range and default\n"
     "  --help               print this help\n"
     "\n"
+    "bisect: which difference of two programs, folders of tables or files of settings moves a case\n"
+    "  (`pitviper regress bisect --help`)\n"
+    "\n"
     "a case\n"
     "  case.yaml            purpose: one sentence; scenario: (a name of `pitviper exercise`, or a file) or log: (a\n"
     "                       file, or ${PITVIPER_DATA}/...); config: | (settings of replay); frames: [3, 7, 12];\n"
-    "                       tolerance: what differs from the defaults. --keys prints all\n"
-    "  record/              the baseline, written by --update: a small EXR per frame, truth.jsonl, run.json\n"
+    "                       tolerance: what differs from the defaults; scores: a recogniser's command, or its recorded\n"
+    "                       answers. --keys prints all\n"
+    "  record/              the baseline, written by --update: a small EXR per frame, truth.jsonl, run.json, scores.json\n"
     "  card.md              written by --update: when and why the baseline changed, newest first\n"
     "\n"
     "compared, in the order of the data path; the first failed channel is named, as the probable cause of the others\n"
     "  counters, time, pose of the sensor, sun, motion of the targets; entity, part, range, normal, visible targets;\n"
-    "  material; temperature; optical, mwir, lwir, radar, radar profile; target signals; error budget. Ids and\n"
-    "  counters must be equal; radiance may differ by 0.05 K apparent, 1 % of optical radiance, 0.1 dB, in all but\n"
-    "  0.1 % of the pixels. The rounding of the baseline is within these tolerances.\n"
+    "  material; temperature; optical, mwir, lwir, radar, radar profile; target signals; scores of a recogniser; error\n"
+    "  budget. Ids and counters must be equal; radiance may differ by 0.05 K apparent, 1 % of optical radiance,\n"
+    "  0.1 dB, in all but 0.1 % of the pixels. The rounding of the baseline is within these tolerances.\n"
     "\n"
     "Differences of the inputs from those of the baseline (tables, models, settings, log, libraries, choices) are\n"
     "reported before any channel, by hashes in run.json. Each case runs in processes of its own: a crash or a timeout\n"
@@ -283,17 +287,6 @@ static void take_case(void *user, int worker, int task)
 
 /* ---- folders ---------------------------------------------------------------------------------- */
 
-static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *where)
-{
-    (void)about;
-    (void)kind;
-    (void)where;
-    return remove(path);
-}
-
-/* Called only for a folder that this process has made by mkdtemp. */
-static void remove_made(const char *folder) { nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS | FTW_MOUNT); }
-
 /* Opens a temporary folder (its path in own), or the one given by --work. */
 static bool open_work(Suite *s, char own[case_path_size])
 {
@@ -354,7 +347,7 @@ static int summary(const Suite *s)
     return failed;
 }
 
-int regress_command(int argc, char **argv)
+int regress_cases_command(int argc, char **argv)
 {
     Suite     s = {.lock = PTHREAD_MUTEX_INITIALIZER};
     char      own[case_path_size];
@@ -379,7 +372,7 @@ int regress_command(int argc, char **argv)
     if (s.o.report && regress_report_write(s.o.report, (const CaseResult *const *)s.result, s.count) != STATUS_OK)
         code = 1;
     for (int i = 0; i < s.count && *own; i++)
-        if (s.result[i]->state == CASE_OK || s.result[i]->state == CASE_SKIPPED) remove_made(s.result[i]->work);
+        if (s.result[i]->state == CASE_OK || s.result[i]->state == CASE_SKIPPED) run_case_remove(s.result[i]->work);
     if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0)
         text_print(stdout,
                    "the output of the failed "
@@ -387,7 +380,7 @@ int regress_command(int argc, char **argv)
                    own);
 
 done:
-    if (!failed && s.o.work && *own) remove_made(own);
+    if (!failed && s.o.work && *own) run_case_remove(own);
     for (int i = 0; i < s.count; i++) free(s.result[i]);
     free(s.result);
     free(s.ended);

@@ -1,6 +1,6 @@
 /* sensor/verify/regress/regress_junit.c: the XML that test servers read (testsuite, testcase, failure, error,
  * skipped). */
-#include "sensor/verify/regress/regress_private.h"
+#include "sensor/verify/regress/run_case.h"
 #include "pitviper_output.h"
 
 #include <errno.h>

@@ -1,6 +1,6 @@
 /* sensor/verify/regress/regress_report.c: the HTML report: a table of all cases, then each failed channel with its
  * images. */
-#include "sensor/verify/regress/regress_private.h"
+#include "sensor/verify/regress/run_case.h"
 
 #include "sensor/publish/files/html_page.h"
 
@@ -8,10 +8,6 @@
 
 enum { path_size = case_path_size + 64, shown_width = 288, thumbnail_width = 192, plot_width = 760, plot_height = 220 };
 
-static void record_folder(char out[path_size], const CaseResult *r)
-{
-    snprintf(out, path_size, "%.4080s/record", r->c.folder);
-}
 static void out_folder(char out[path_size], const CaseResult *r) { snprintf(out, path_size, "%.4080s/out", r->work); }
 static void scratch_file(char out[path_size], const CaseResult *r)
 {
@@ -23,8 +19,7 @@ static bool both_frames(RecordFrame *expected, RecordFrame *got, const CaseResul
     char path[path_size];
     out_folder(path, r);
     if (record_frame_from_run(got, path, number) != STATUS_OK) return false;
-    record_folder(path, r);
-    if (record_frame_from_record(expected, path, got) == STATUS_OK) {
+    if (record_frame_from_record(expected, r->record, got) == STATUS_OK) {
         if (record_frame_rename_materials(got, expected) == STATUS_OK) return true;
         record_frame_free(expected);
     }
@@ -249,7 +244,7 @@ static void put_block(FILE *page, const char *head, const char *text)
     fputs("</code></pre>\n", page);
 }
 
-static void put_failed(FILE *page, const CaseResult *r, int number)
+void regress_report_failed(FILE *page, const CaseResult *r, int number)
 {
     fprintf(page, "<h2 id=\"case%d\">", number);
     html_text(page, "%s", r->c.name);
@@ -370,7 +365,7 @@ Status regress_report_write(const char *path, const CaseResult *const *result, i
     if (!page) return STATUS_IO;
     put_summary(page, result, count);
     for (int i = 0; i < count; i++) {
-        if (has_failed(result[i])) put_failed(page, result[i], i);
+        if (has_failed(result[i])) regress_report_failed(page, result[i], i);
         else passed = true;
     }
     if (passed) fputs("<h2>Passed and skipped</h2>\n", page);

@@ -1,5 +1,5 @@
 /* sensor/verify/regress/run_case.c: runs one case: its log, settings and replay, then the comparison or the update. */
-#include "sensor/verify/regress/regress_private.h"
+#include "sensor/verify/regress/run_case.h"
 #include "pitviper_output.h"
 
 #include "sensor/settings/config.h"
@@ -7,6 +7,7 @@
 #include "sensor/node/run/stop.h"
 
 #include <errno.h>
+#include <ftw.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -18,7 +19,7 @@ enum { path_size = case_path_size + 64, tail_size = 3000 };
 
 static _Thread_local CaseResult *case_here;
 
-static void say(CaseResult *r, const char *text)
+void run_case_say(CaseResult *r, const char *text)
 {
     const size_t n = strlen(r->said);
     snprintf(r->said + n, sizeof r->said - n, "%s", text);
@@ -31,9 +32,9 @@ void run_case_log(void *user, LogLevel level, const char *line)
         fprintf(stderr, "%s%s\n", log_head(level), line);
         return;
     }
-    say(case_here, log_head(level));
-    say(case_here, line);
-    say(case_here, "\n");
+    run_case_say(case_here, log_head(level));
+    run_case_say(case_here, line);
+    run_case_say(case_here, "\n");
 }
 
 /* Finds the last error in the output of the processes. */
@@ -47,7 +48,7 @@ static void last_error(char *out, size_t out_size, const char *said)
     else snprintf(out, out_size, "no error message");
 }
 
-__attribute__((format(printf, 3, 4))) static bool end_case(CaseResult *r, CaseState state, const char *format, ...)
+bool run_case_end(CaseResult *r, CaseState state, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -71,33 +72,33 @@ static bool run_child(CaseResult *r, const ChildLine *line, const char *name)
     strcat(r->command, "\n");
     if (case_child_run(&end, line, out_path, error_path, r->c.timeout_s) != STATUS_OK) {
         last_error(reason, sizeof reason, r->said);
-        return end_case(r, CASE_BROKEN, "%s", reason);
+        return run_case_end(r, CASE_BROKEN, "%s", reason);
     }
     case_child_tail(tail, sizeof tail, error_path);
-    say(r, tail);
-    if (end.stopped) return end_case(r, CASE_BROKEN, "stopped");
+    run_case_say(r, tail);
+    if (end.stopped) return run_case_end(r, CASE_BROKEN, "stopped");
     if (end.timed_out)
-        return end_case(r, CASE_BROKEN,
-                        "`pitviper %s` was ended after %g s (timeout_s); it hangs, or the case needs more time", name,
-                        r->c.timeout_s);
-    if (end.signal) return end_case(r, CASE_BROKEN, "`pitviper %s` crashed: %s", name, strsignal(end.signal));
+        return run_case_end(r, CASE_BROKEN,
+                            "`pitviper %s` was ended after %g s (timeout_s); it hangs, or the case needs more time",
+                            name, r->c.timeout_s);
+    if (end.signal) return run_case_end(r, CASE_BROKEN, "`pitviper %s` crashed: %s", name, strsignal(end.signal));
     if (end.code) {
         last_error(reason, sizeof reason, tail);
-        return end_case(r, CASE_BROKEN, "`pitviper %s` failed: %s", name, reason);
+        return run_case_end(r, CASE_BROKEN, "`pitviper %s` failed: %s", name, reason);
     }
     return true;
 }
 
 /* The log of a scenario; false when the case has ended. */
-static bool make_log(char log[path_size], CaseResult *r)
+static bool make_log(char log[path_size], CaseResult *r, const CaseHow *how)
 {
     char        scenario[case_path_size], reason[256], set[sizeof r->c.scenario_set];
-    ChildLine   line = {0};
+    ChildLine   line = {.program = how->generator, .tables = how->tables};
     struct stat there;
-    if (!case_path(scenario, reason, &r->c, r->c.scenario)) return end_case(r, CASE_BROKEN, "scenario: %s", reason);
+    if (!case_path(scenario, reason, &r->c, r->c.scenario)) return run_case_end(r, CASE_BROKEN, "scenario: %s", reason);
     const bool is_file = stat(scenario, &there) == 0 && S_ISREG(there.st_mode);
     if (!is_file && strpbrk(r->c.scenario, "/."))
-        return end_case(r, CASE_BROKEN, "scenario: there is no file %.400s", scenario);
+        return run_case_end(r, CASE_BROKEN, "scenario: there is no file %.400s", scenario);
     snprintf(log, path_size, "%.4080s/log.pcapng", r->work);
     bool fits = case_child_add(&line, "pitviper") && case_child_add(&line, "exercise") &&
                 case_child_add(&line, is_file ? scenario : r->c.scenario) && case_child_add(&line, "--overwrite") &&
@@ -106,7 +107,7 @@ static bool make_log(char log[path_size], CaseResult *r)
     char *rest = set;
     for (char *one; (one = strtok_r(rest, " \t\r\n", &rest));)
         fits = fits && case_child_add(&line, "--set") && case_child_add(&line, one);
-    if (!fits) return end_case(r, CASE_BROKEN, "scenario_set: too many settings");
+    if (!fits) return run_case_end(r, CASE_BROKEN, "scenario_set: too many settings");
     return run_child(r, &line, "exercise");
 }
 
@@ -118,9 +119,9 @@ static bool find_log(char log[path_size], CaseResult *r, const CaseHow *how)
     const bool        allowed = r->c.log_may_be_absent || how->allow_missing;
     const CaseState   state = allowed ? CASE_SKIPPED : CASE_BROKEN;
     if (!case_path(path, reason, &r->c, r->c.log))
-        return end_case(r, state, "log missing: %s%s", reason, allowed ? "" : next);
+        return run_case_end(r, state, "log missing: %s%s", reason, allowed ? "" : next);
     if (access(path, R_OK) != 0)
-        return end_case(r, state, "log missing: %.400s: %s%s", path, strerror(errno), allowed ? "" : next);
+        return run_case_end(r, state, "log missing: %.400s: %s%s", path, strerror(errno), allowed ? "" : next);
     snprintf(log, path_size, "%s", path);
     return true;
 }
@@ -145,14 +146,16 @@ static bool make_paths_absolute(const char *config, const CaseResult *r)
     return ok;
 }
 
-/* config.yaml of the work folder, from `config` of the case; or the file that `config_file` names. */
-static bool find_config(char config[path_size], CaseResult *r)
+/* config.yaml of the work folder, from `config` of the case; the file that `config_file` names; or another's. */
+static bool find_config(char config[path_size], CaseResult *r, const CaseHow *how)
 {
     char path[case_path_size], reason[256];
     *config = 0;
-    if (*r->c.config_file) {
+    if (how->settings) {
+        snprintf(config, path_size, "%s", how->settings);
+    } else if (*r->c.config_file) {
         if (!case_path(path, reason, &r->c, r->c.config_file))
-            return end_case(r, CASE_BROKEN, "config_file: %s", reason);
+            return run_case_end(r, CASE_BROKEN, "config_file: %s", reason);
         snprintf(config, path_size, "%s", path);
     } else if (*r->c.config) {
         snprintf(config, path_size, "%.4080s/config.yaml", r->work);
@@ -161,8 +164,8 @@ static bool find_config(char config[path_size], CaseResult *r)
         if (file && fclose(file) != 0) ok = false;
         ok = ok && make_paths_absolute(config, r);
         if (!ok)
-            return end_case(r, CASE_BROKEN, "cannot write %.300s: %s; choose another place with --work", config,
-                            output_reason(errno));
+            return run_case_end(r, CASE_BROKEN, "cannot write %.300s: %s; choose another place with --work", config,
+                                output_reason(errno));
     }
     return true;
 }
@@ -171,32 +174,26 @@ static bool replay_case(CaseResult *r, const CaseHow *how, const char *log, cons
 {
     char      out[path_size], only[8 * case_frames_max], threads[16];
     size_t    n = 0;
-    ChildLine line = {0};
+    ChildLine line = {.program = how->program, .tables = how->tables};
     for (int i = 0; i < r->c.frames.count; i++)
         n += (size_t)snprintf(only + n, sizeof only - n, "%s%.0f", i ? "," : "", r->c.frames.number[i]);
     snprintf(out, sizeof out, "%.4080s/out", r->work);
     snprintf(threads, sizeof threads, "%d", how->threads);
-    const char *const fixed[] = {"pitviper",
-                                 "replay",
-                                 log,
-                                 "--out",
-                                 out,
-                                 "--only",
-                                 only,
-                                 "--threads",
-                                 threads,
-                                 "--no-png",
-                                 "--overwrite",
-                                 "--set",
-                                 "publish.files=true",
-                                 "--set",
-                                 "publish.planes=all"};
+    const char *const fixed[] = {"pitviper", "replay",
+                                 log,        "--out",
+                                 out,        "--only",
+                                 only,       "--threads",
+                                 threads,    "--overwrite",
+                                 "--set",    "publish.files=true",
+                                 "--set",    "publish.planes=all"};
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) case_child_add(&line, fixed[i]);
     if (*config) {
         case_child_add(&line, "--config");
         case_child_add(&line, config);
     }
+    if (!*r->c.scores.command) case_child_add(&line, "--no-png"); /* a recogniser may want to see displays */
     if (r->c.causal) case_child_add(&line, "--causal");
+    if (how->verbose) case_child_add(&line, "--verbose");
     if (how->isa) {
         case_child_add(&line, "--isa");
         case_child_add(&line, how->isa);
@@ -210,33 +207,33 @@ static bool replay_case(CaseResult *r, const CaseHow *how, const char *log, cons
 static bool has_record(CaseResult *r)
 {
     char path[path_size];
-    snprintf(path, sizeof path, "%.4080s/record/run.json", r->c.folder);
+    snprintf(path, sizeof path, "%.4090s/run.json", r->record);
     if (access(path, F_OK) != 0)
-        return end_case(r, CASE_NO_RECORD,
-                        "no baseline yet: inspect the output, then approve it with `pitviper regress --update %.300s "
-                        "--why "
-                        "TEXT`",
-                        r->c.folder);
+        return run_case_end(
+            r, CASE_NO_RECORD,
+            "no baseline yet: inspect the output, then approve it with `pitviper regress --update %.300s "
+            "--why "
+            "TEXT`",
+            r->c.folder);
     for (int i = 0; i < r->c.frames.count; i++) {
-        snprintf(path, sizeof path, "%.4000s/record/%06.0f.exr", r->c.folder, r->c.frames.number[i]);
+        snprintf(path, sizeof path, "%.4090s/%06.0f.exr", r->record, r->c.frames.number[i]);
         if (access(path, F_OK) != 0)
-            return end_case(r, CASE_BROKEN,
-                            "the baseline has no frame %.0f: `pitviper regress --update %.300s --why TEXT` writes "
-                            "it again",
-                            r->c.frames.number[i], r->c.folder);
+            return run_case_end(r, CASE_BROKEN,
+                                "the baseline has no frame %.0f: `pitviper regress --update %.300s --why TEXT` writes "
+                                "it again",
+                                r->c.frames.number[i], r->c.folder);
     }
     return true;
 }
 
 static void compare_case(CaseResult *r)
 {
-    char record[path_size], out[path_size], reason[512];
-    snprintf(record, sizeof record, "%.4080s/record", r->c.folder);
+    char out[path_size], reason[512];
     snprintf(out, sizeof out, "%.4080s/out", r->work);
-    r->compared = verdict_of(&r->verdict, &r->c, record, out) == STATUS_OK;
+    r->compared = verdict_of(&r->verdict, &r->c, r->record, out) == STATUS_OK;
     if (!r->compared) {
         last_error(reason, sizeof reason, r->said);
-        end_case(r, CASE_BROKEN, "%s", reason);
+        run_case_end(r, CASE_BROKEN, "%s", reason);
         return;
     }
     const int first = r->verdict.first;
@@ -245,6 +242,9 @@ static void compare_case(CaseResult *r)
         if (strstr(r->verdict.remarks, "bits differ"))
             snprintf(r->line, sizeof r->line, "%s", strstr(r->verdict.remarks, "bits differ"));
         r->line[strcspn(r->line, "\n")] = 0;
+        if (!case_has_scores(&r->c)) return;
+        const size_t n = strlen(r->line);
+        snprintf(r->line + n, sizeof r->line - n, "%s%s", n ? "; " : "", r->verdict.channel[CHANNEL_SCORES].line);
         return;
     }
     int others = 0;
@@ -261,22 +261,25 @@ static void run_steps(CaseResult *r, const CaseHow *how)
 {
     char log[path_size], config[path_size];
     if (*r->c.log && !find_log(log, r, how)) return;
-    if (!how->update && !has_record(r)) return;
+    if (how->record) snprintf(r->record, sizeof r->record, "%s", how->record);
+    else snprintf(r->record, sizeof r->record, "%.4080s/record", r->c.folder);
+    if (!how->update && *r->record && !has_record(r)) return;
     if (frame_files_folder(r->work) != STATUS_OK) {
-        end_case(r, CASE_BROKEN, "cannot make the folder %.300s; choose another place with --work", r->work);
+        run_case_end(r, CASE_BROKEN, "cannot make the folder %.300s; choose another place with --work", r->work);
         return;
     }
-    if (!*r->c.log && !make_log(log, r)) return;
-    if (!find_config(config, r) || !replay_case(r, how, log, config)) return;
+    if (!*r->c.log && !make_log(log, r, how)) return;
+    if (!find_config(config, r, how) || !replay_case(r, how, log, config) || !case_scores(r)) return;
     if (how->update) case_update(r, how->why);
-    else compare_case(r);
+    else if (*r->record) compare_case(r);
+    else r->state = CASE_OK;
 }
 
 void run_case(CaseResult *r, const CaseHow *how)
 {
     const double begun_s = wall_clock_s();
     if (stop_asked()) {
-        end_case(r, CASE_BROKEN, "stopped");
+        run_case_end(r, CASE_BROKEN, "stopped");
         return;
     }
     case_here = r;
@@ -284,3 +287,15 @@ void run_case(CaseResult *r, const CaseHow *how)
     case_here = NULL;
     r->seconds = wall_clock_s() - begun_s;
 }
+
+/* ---- folders of its own -------------------------------------------------------------------------- */
+
+static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *where)
+{
+    (void)about;
+    (void)kind;
+    (void)where;
+    return remove(path);
+}
+
+void run_case_remove(const char *folder) { nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS | FTW_MOUNT); }

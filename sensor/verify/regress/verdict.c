@@ -1,8 +1,9 @@
 /* sensor/verify/regress/verdict.c: compares a run with its baseline: sizes, inputs, counters, truth, planes. */
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { file_most = 64 << 20 };
 
@@ -211,6 +212,28 @@ static Status compare_frame(Verdict *v, const Case *c, const char *record, const
     return status;
 }
 
+static Status compare_scores(Verdict *v, const Case *c, const char *record, const char *run)
+{
+    char           path[case_path_size + 32];
+    JsonValues     was = {0}, is = {0};
+    ChannelResult *r = &v->channel[CHANNEL_SCORES];
+    *r = (ChannelResult){.there = true, .frame = -1};
+    Status status = read_json(&is, c, run, "scores.json");
+    snprintf(path, sizeof path, "%s/scores.json", record);
+    if (status == STATUS_OK && access(path, F_OK) != 0) {
+        r->failed = true;
+        r->diffs = 1;
+        snprintf(r->line, sizeof r->line,
+                 "the baseline has none: `pitviper regress --update` approves those of this run");
+    } else if (status == STATUS_OK) {
+        status = read_json(&was, c, record, "scores.json");
+        if (status == STATUS_OK) verdict_scores(r, &was, &is, &c->tolerance);
+    }
+    json_values_free(&was);
+    json_values_free(&is);
+    return status;
+}
+
 Status verdict_of(Verdict *out, const Case *c, const char *record, const char *run)
 {
     JsonValues was = {0}, is = {0};
@@ -229,6 +252,7 @@ Status verdict_of(Verdict *out, const Case *c, const char *record, const char *r
     }
     for (int i = 0; i < c->frames.count && status == STATUS_OK; i++)
         status = compare_frame(out, c, record, run, (int)c->frames.number[i]);
+    if (status == STATUS_OK && case_has_scores(c)) status = compare_scores(out, c, record, run);
     for (int k = 0; k < CHANNEL_COUNT; k++) {
         ChannelResult *r = &out->channel[k];
         if (r->diffs > 1) {

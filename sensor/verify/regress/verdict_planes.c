@@ -1,6 +1,6 @@
 /* sensor/verify/regress/verdict_planes.c: the channels of a verdict, and the planes and range profile of a frame
  * compared with those of its baseline. */
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include "sensor/detector/preset.h"
 
@@ -42,6 +42,7 @@ static const struct ChannelRow {
                        "dB", .absolute = LIMIT(radar_db), .as = decibel},
     [CHANNEL_PROFILE] = {"radar profile", "radar power over range, relative to the largest of the baseline", "dB"},
     [CHANNEL_SIGNALS] = {"target signals", "contrast, signal-to-noise ratio and intensity of each target", ""},
+    [CHANNEL_SCORES] = {"scores", "detection rate, false alarms and average precision of a recogniser's answers", ""},
     [CHANNEL_ERROR] = {"error budget", "the run's estimate of its own error", ""},
 };
 

@@ -1,5 +1,5 @@
 /* sensor/verify/regress/verdict_truth.c: fields of truth.jsonl and run.json, each by the tolerance of its row. */
-#include "sensor/verify/regress/verdict_private.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include "sensor/frame/record_fields.h"
 #include "sensor/node/run/run_record.h"

@@ -1,4 +1,4 @@
-/* sensor/verify/regress/case_private.h: a case of the regression: exercise, settings, frames and tolerances.
+/* sensor/verify/regress/case.h: a case of the regression: exercise, settings, frames and tolerances.
  *
  * A case is a folder:
  *
@@ -23,19 +23,23 @@
  *     timeout_s: 300              # a process that takes longer is ended, and the case fails
  *     tolerance:                  # overrides of the defaults, whose reasons are in CASE_TOLERANCE
  *       lwir_k: 0.05
+ *     scores:                     # a recogniser's answers, scored against the truth of the frames
+ *       command: python3 recogniser.py      # run as `COMMAND OUT` in this folder; writes OUT/answers.jsonl
+ *       # answers: answers.jsonl            # or answers that were recorded, in this folder
  *
  * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
- * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/verdict_private.h says;
- * NNNNNN.profile.exr, a row of range bins; truth.jsonl as the run wrote it, and run.json without times. */
-#ifndef SENSOR_VERIFY_REGRESS_CASE_PRIVATE_H
-#define SENSOR_VERIFY_REGRESS_CASE_PRIVATE_H
+ * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/verify/regress/verdict.h says;
+ * NNNNNN.profile.exr, a row of range bins; truth.jsonl as the run wrote it, and run.json without times; scores.json
+ * (sensor/verify/regress/case_scores.c), with scores. */
+#ifndef SENSOR_VERIFY_REGRESS_CASE_H
+#define SENSOR_VERIFY_REGRESS_CASE_H
 
 #include "pitviper_settings.h"
 
 enum { case_path_size = 4096, case_frames_max = 64 };
 
 /* The keys, as pitviper_settings.h says. The tolerances are below any significance for a user of the products, above
- * the rounding of sensor/verify/regress/verdict_private.h: a value that crosses from one step to the next is still
+ * the rounding of sensor/verify/regress/verdict.h: a value that crosses from one step to the next is still
  * within. No allowance for threads, ISAs and builds, which give the same bits (tests/system/test_determinism*.sh). */
 /* clang-format off */
 #define CASE_TOP(ROW) \
@@ -52,6 +56,14 @@ enum { case_path_size = 4096, case_frames_max = 64 };
     ROW(BOOL, , causal, false, "replay --causal") \
     ROW(BOOL, , log_may_be_absent, false, "a missing log skips the case instead of failing it") \
     ROW(DOUBLE, , timeout_s, 300, 0.1, 86400, "s", "time limit of each process of the case")
+
+#define CASE_SCORES(ROW) \
+    ROW(TEXT, scores., command, "", 1024, "", \
+        "recogniser's command, run by the shell in the case's folder with the folder of the run behind it, without " \
+        "network; it writes answers.jsonl there") \
+    ROW(TEXT, scores., answers, "", 1024, "", "its recorded answers, in place of a command: in the case's folder, or " \
+        "${PITVIPER_DATA}/...") \
+    ROW(DOUBLE, scores., timeout_s, 300, 0.1, 86400, "s", "time limit of the command")
 
 #define CASE_TOLERANCE(ROW) \
     /* 6 cm in 2 km: two steps of the baseline */ \
@@ -78,7 +90,11 @@ enum { case_path_size = 4096, case_frames_max = 64 };
     /* ISAs of the ray tracer differ in t for 5 % of the rays, in ids for none */ \
     ROW(DOUBLE, tolerance., edge_share, 0.02, 0, 1, "", \
         "share of edge pixels whose ids may differ, with different libraries or ISA") \
-    ROW(DOUBLE, tolerance., truth, 1, 0, 1e6, "", "factor on the tolerances of truth.jsonl")
+    ROW(DOUBLE, tolerance., truth, 1, 0, 1e6, "", "factor on the tolerances of truth.jsonl") \
+    /* recorded answers, and a recogniser that is repeatable, score the same of the same truth */ \
+    ROW(DOUBLE, tolerance., detection, 0, 0, 1, "", "detection rate, of all bands and of each") \
+    ROW(DOUBLE, tolerance., false_alarms, 0, 0, 1e6, "", "false alarms per frame and band") \
+    ROW(DOUBLE, tolerance., ap, 0, 0, 1, "", "average precision, over classes")
 
 /* The largest accepted differences, and the share of pixels that may be beyond them. */
 typedef struct Tolerance { CASE_TOLERANCE(SETTING_MEMBER) } Tolerance;
@@ -86,6 +102,7 @@ typedef struct Tolerance { CASE_TOLERANCE(SETTING_MEMBER) } Tolerance;
 typedef struct Case {
     char folder[case_path_size], name[128];
     CASE_TOP(SETTING_MEMBER)
+    struct { CASE_SCORES(SETTING_MEMBER) } scores;
     Tolerance tolerance;
 } Case;
 /* clang-format on */
@@ -98,6 +115,7 @@ Status case_read_file(Case *out, const char *path);
 /* Path of a file that the case names: ${NAME} from the environment, else relative to the folder. False, with the
  * reason, when that variable is not set or the path too long. */
 bool case_path(char out[case_path_size], char reason[256], const Case *c, const char *name);
+bool case_has_scores(const Case *c);
 /* Replaces, in text on the heap, absolute paths in the case's folder by relative ones and those in $PITVIPER_DATA by
  * ${PITVIPER_DATA}/..., so that a baseline is the same wherever it was made. */
 Status case_relative(char **text, const Case *c);

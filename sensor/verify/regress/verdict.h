@@ -1,12 +1,12 @@
-/* sensor/verify/regress/verdict_private.h: a run's JSON and planes read back, and compared with its baseline, channel
+/* sensor/verify/regress/verdict.h: a run's JSON and planes read back, and compared with its baseline, channel
  * by channel, in the order of the data path: the first that fails is the probable cause of those after it. */
-#ifndef SENSOR_VERIFY_REGRESS_VERDICT_PRIVATE_H
-#define SENSOR_VERIFY_REGRESS_VERDICT_PRIVATE_H
+#ifndef SENSOR_VERIFY_REGRESS_VERDICT_H
+#define SENSOR_VERIFY_REGRESS_VERDICT_H
 
 #include "pitviper.h"
 #include "render/frame/planes.h"
 #include "sensor/frame/field.h"
-#include "sensor/verify/regress/case_private.h"
+#include "sensor/verify/regress/case.h"
 
 /* ---- values of JSON (json_values.c) ---------------------------------------------------------- */
 
@@ -157,6 +157,7 @@ typedef enum Channel {
     CHANNEL_RADAR,
     CHANNEL_PROFILE,
     CHANNEL_SIGNALS, /* contrast, SNR, intensity of each target: truth.jsonl */
+    CHANNEL_SCORES,  /* detection, false alarms, average precision of a recogniser, which follow from all before */
     CHANNEL_ERROR,   /* the run's estimate of its own error: truth.jsonl */
     CHANNEL_COUNT
 } Channel;
@@ -220,6 +221,9 @@ void verdict_fields(ChannelResult result[CHANNEL_COUNT], int frame, const JsonVa
 /* A line of truth.jsonl. */
 void verdict_truth(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
                    double factor);
+/* scores.json: rates by the case's tolerances, in all bands together and in each. */
+void verdict_scores(ChannelResult *result, const JsonValues *expected, const JsonValues *got,
+                    const Tolerance *tolerance);
 /* run.json: counters. */
 void verdict_counters(ChannelResult result[CHANNEL_COUNT], const JsonValues *expected, const JsonValues *got);
 
