@@ -92,8 +92,7 @@ static I32x8 look_up(const Card *card, I32x8 at, F32x8 lanes)
     return i32x8_load(texel);
 }
 
-unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const Card *card, const CardRays *rays,
-                    uint32_t plant, unsigned lanes)
+unsigned card_aim(CardAim *out, const Card *card, const CardRays *rays, unsigned lanes)
 {
     const F32x8 zero = f32x8_set(0), side = f32x8_set(table_side >> card->level);
     F32x8       o[3], d[3],
@@ -109,14 +108,29 @@ unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const 
     const F32x8 column = f32x8_fma(middle_m, dot(card->u, d), at[1]), row = f32x8_fma(middle_m, dot(card->v, d), at[2]);
     F32x8 in = f32x8_and(f32x8_mask(lanes), f32x8_and(f32x8_and(f32x8_at_most(zero, column), f32x8_less(column, side)),
                                                       f32x8_and(f32x8_at_most(zero, row), f32x8_less(row, side))));
-    if (!f32x8_bits(in)) return 0;
-    const I32x8 texel = look_up(
-        card, i32x8_add(i32x8_mul(i32x8_truncate(row), i32x8_set(table_side >> card->level)), i32x8_truncate(column)),
-        in);
+    const unsigned through = f32x8_bits(in);
+    if (!through) return 0;
+    out->in = in, out->per = per, out->depth = at[0];
+    for (int c = 0; c < 3; c++) out->o[c] = o[c];
+    out->place =
+        i32x8_add(i32x8_mul(i32x8_truncate(row), i32x8_set(table_side >> card->level)), i32x8_truncate(column));
+    int32_t         place[card_lanes];
+    const uint32_t *texels = plant_table_texels(card->table, card->way, card->level);
+    i32x8_store(place, out->place);
+    for (unsigned left = through; left; left &= left - 1) __builtin_prefetch(texels + place[__builtin_ctz(left)]);
+    return through;
+}
+
+unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const Card *card, const CardRays *rays,
+                    uint32_t plant, const CardAim *aim)
+{
+    const F32x8 zero = f32x8_set(0), per = aim->per, *o = aim->o;
+    F32x8       in = aim->in;
+    const I32x8 texel = look_up(card, aim->place, in);
     in = f32x8_and_not(in, i32x8_equal(texel, i32x8_set(table_nothing)));
     if (!f32x8_bits(in)) return 0;
     const F32x8 depth = f32x8_of_ints(i32x8_shift_signed(texel, table_quad_bits)) * f32x8_set((double)card->unit);
-    const F32x8 range = (depth - at[0]) * per;
+    const F32x8 range = (depth - aim->depth) * per;
     const I32x8 of = i32x8_sub(i32x8_and(texel, i32x8_set(table_quad_mask)), i32x8_set(2));
     F32x8       least = zero;
     if (rays->way_enu) { /* of its own plant, what lies clearly nearer to the sun, but for the quad that it leaves */
@@ -126,7 +140,7 @@ unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const 
     }
     in = f32x8_and(in, f32x8_less(least, range));
     for (int c = 0; c < 3; c++) {
-        const F32x8 p = f32x8_fma(range, d[c], o[c]);
+        const F32x8 p = f32x8_fma(range, f32x8_load(rays->d[c]), o[c]);
         in = f32x8_and(in, f32x8_and(f32x8_at_most(f32x8_set((double)card->low[c]), p),
                                      f32x8_at_most(p, f32x8_set((double)card->high[c]))));
     }

@@ -7,7 +7,7 @@
 static void open_packets(Packet *p, Memory *kept, const ForestFrame *frame, const double *way_enu)
 {
     p->rays.frame = frame, p->rays.way_enu = way_enu, p->rays.bend_per_m = 0;
-    p->kept = kept, p->entered = 0;
+    p->kept = kept, p->entered = 0, p->late = 0, p->pending.list = NULL, p->pending.card = NULL;
     memset(kept->of, 0, sizeof kept->of);
     for (int k = 0; k < frames_kept; k++) kept->frame[k].plant = NULL;
 }
@@ -101,6 +101,8 @@ static void intersect(Packet *p, RTCScene scene, struct RTCRayHit8 *rays, unsign
             rtcIntersect1(scene, &p->base, &one);
         }
     }
+    packet_settle(p);
+    p->late = 0;
     p->base.flags = flags;
 }
 
@@ -114,12 +116,16 @@ static void occlude(Packet *p, RTCScene scene, struct RTCRay8 *rays, unsigned la
     }
     if (p->rays.frame->forest->packets) {
         rtcOccluded8(valid, scene, &p->base, rays);
+        packet_settle(p);
+        p->late = 0;
         return;
     }
     for (unsigned left = lanes; left; left &= left - 1) {
         struct RTCRay one = ray_of(rays, __builtin_ctz(left));
         rtcOccluded1(scene, &p->base, &one);
     }
+    packet_settle(p);
+    p->late = 0;
 }
 
 /* The ray's origin, about that of plants. */

@@ -14,6 +14,15 @@ typedef struct Memory {
     PlantFrame   frame[frames_kept];
 } Memory;
 
+/* A plant's table whose texels are on their way: it is looked up when the next plant is visited. */
+typedef struct Pending {
+    const PlantList *list; /* NULL: none */
+    const Card      *card;
+    uint32_t         place;
+    bool             any;
+    CardAim          aim;
+} Pending;
+
 typedef struct Packet {
     struct RTCIntersectContext base; /* first: Embree passes it to the callbacks */
     CardRays                   rays;
@@ -22,8 +31,13 @@ typedef struct Packet {
     unsigned                   by_table; /* lanes that need no plant itself */
     unsigned                   table_hit;
     uint64_t                   entered; /* plants' boxes */
+    unsigned                   late;    /* lanes that end nearer, or are stopped, than Embree knows */
+    Pending                    pending;
     ListRay                    ray[card_lanes];
 } Packet;
+
+/* Looks up what is pending. Before the origin of rays changes. */
+void packet_settle(Packet *p);
 
 /* ---- what Embree passes to a callback --------------------------------------------------------- */
 

@@ -347,10 +347,18 @@ typedef struct Card {
     float       unit, step_m; /* of depth; width of a texel of the finest level */
 } Card;
 
+/* Where rays go through a card's table, and what their ranges follow from. */
+typedef struct CardAim {
+    F32x8 in, per, depth, o[3];
+    I32x8 place;
+} CardAim;
+/* Lanes that go through the table, whose texels are fetched from now on. */
+unsigned card_aim(CardAim *out, const Card *card, const CardRays *rays, unsigned lanes);
+
 void card_make(Card *card, const CardRays *rays, const PlantList *list, const Plant *plant);
 /* Those of the lanes that meet the plant; their ranges and quads. plant: its number. */
 unsigned card_meets(float range_m[card_lanes], uint32_t quad[card_lanes], const Card *card, const CardRays *rays,
-                    uint32_t plant, unsigned lanes);
+                    uint32_t plant, const CardAim *aim);
 /* Those of the lanes whose rays come within reach_m of a place about the list's origin; within 0.02 m, 50 km away. */
 unsigned card_near(const CardRays *rays, const float at_m[3], double reach_m, unsigned lanes);
 

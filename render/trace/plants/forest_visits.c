@@ -1,5 +1,6 @@
 /* render/trace/plants/forest_visits.c: what rays of a packet meet of the plants of a box: by a plant's table, or of the
- * plant itself. */
+ * plant itself. A table is looked up at the visit after its own: its texels come from memory while Embree goes on to
+ * the next box. A ray may so enter a box more than it must; what it meets first depends on no order. */
 #include "render/trace/plants/forest_packets_private.h"
 
 /* NULL: no lane needs it. */
@@ -9,6 +10,7 @@ static const Card *card_of(Packet *p, const PlantList *list, uint32_t place, uns
     const size_t slot = (uintptr_t)plant / sizeof *plant % cards_kept;
     Card        *card = &p->kept->card[slot];
     if (!(p->by_table & lanes)) return NULL;
+    if (p->kept->of[slot] != plant && p->pending.card == card) packet_settle(p);
     if (p->kept->of[slot] != plant) card_make(card, &p->rays, list, plant);
     p->kept->of[slot] = plant;
     return card->real ? NULL : card;
@@ -40,13 +42,13 @@ static Visit visit_of(Packet *p, const PlantList *list, uint32_t place, unsigned
 }
 
 /* Lanes whose first hit is the table's. */
-static unsigned first_by_table(Packet *p, const Card *card, const PlantList *list, uint32_t place, unsigned lanes)
+static unsigned first_by_table(Packet *p, const Card *card, const PlantList *list, uint32_t place, const CardAim *aim)
 {
     const uint32_t plant = plant_number(list, place);
     float          range_m[card_lanes];
     uint32_t       quad[card_lanes];
     unsigned       nearer = 0;
-    for (unsigned met = card_meets(range_m, quad, card, &p->rays, plant, lanes); met; met &= met - 1) {
+    for (unsigned met = card_meets(range_m, quad, card, &p->rays, plant, aim); met; met &= met - 1) {
         const int    l = __builtin_ctz(met);
         ListRay     *ray = &p->ray[l];
         const double at_m = (double)range_m[l];
@@ -59,11 +61,44 @@ static unsigned first_by_table(Packet *p, const Card *card, const PlantList *lis
     return nearer;
 }
 
+/* Lanes that the table stops. */
+static unsigned stopped_by_table(Packet *p, const Card *card, uint32_t plant, const CardAim *aim)
+{
+    float    range_m[card_lanes];
+    uint32_t quad[card_lanes];
+    unsigned stopped = 0;
+    for (unsigned met = card_meets(range_m, quad, card, &p->rays, plant, aim); met; met &= met - 1) {
+        const int l = __builtin_ctz(met);
+        if ((double)range_m[l] < p->ray[l].limit_m) p->ray[l].met = true, stopped |= 1u << l;
+    }
+    return stopped;
+}
+
+void packet_settle(Packet *p)
+{
+    Pending       *of = &p->pending;
+    const uint32_t plant = of->list ? plant_number(of->list, of->place) : 0;
+    if (!of->list) return;
+    p->late |= of->any ? stopped_by_table(p, of->card, plant, &of->aim)
+                       : first_by_table(p, of->card, of->list, of->place, &of->aim);
+    of->list = NULL;
+}
+
+/* The plant is what is pending from now on; what was before is looked up. */
+static void aim_at(Packet *p, const Card *card, const PlantList *list, uint32_t place, unsigned lanes, bool any)
+{
+    CardAim aim;
+    if (!card_aim(&aim, card, &p->rays, lanes)) return;
+    packet_settle(p);
+    p->pending = (Pending){list, card, place, any, aim};
+}
+
 /* Lanes whose first hit is the plant's. */
 static unsigned meet_first(Packet *p, const PlantList *list, uint32_t place, unsigned lanes)
 {
     const Visit v = visit_of(p, list, place, lanes);
-    unsigned    nearer = v.tables ? first_by_table(p, v.card, list, place, v.tables) : 0;
+    unsigned    nearer = 0;
+    if (v.tables) aim_at(p, v.card, list, place, v.tables, false);
     for (unsigned left = v.plant; left; left &= left - 1) {
         const int l = __builtin_ctz(left);
         if (!plant_first(&p->ray[l], list, place)) continue;
@@ -87,26 +122,16 @@ void plant_intersect(const struct RTCIntersectFunctionNArguments *a)
     const uint32_t   end = end_of_box(list, a->primID);
     unsigned         nearer = 0;
     for (uint32_t k = a->primID * (uint32_t)list->per_box; k < end; k++) nearer |= meet_first(p, list, k, lanes);
+    nearer |= p->late & lanes, p->late &= ~lanes;
     end_rays(&of, p, nearer);
-}
-
-static unsigned stopped_by_table(Packet *p, const Card *card, uint32_t plant, unsigned lanes)
-{
-    float    range_m[card_lanes];
-    uint32_t quad[card_lanes];
-    unsigned stopped = 0;
-    for (unsigned met = card_meets(range_m, quad, card, &p->rays, plant, lanes); met; met &= met - 1) {
-        const int l = __builtin_ctz(met);
-        if ((double)range_m[l] < p->ray[l].limit_m) p->ray[l].met = true, stopped |= 1u << l;
-    }
-    return stopped;
 }
 
 /* Lanes that the plant stops. */
 static unsigned meet_any(Packet *p, const PlantList *list, uint32_t place, unsigned lanes)
 {
     const Visit v = visit_of(p, list, place, lanes);
-    unsigned    stopped = v.tables ? stopped_by_table(p, v.card, plant_number(list, place), v.tables) : 0;
+    unsigned    stopped = 0;
+    if (v.tables) aim_at(p, v.card, list, place, v.tables, true);
     for (unsigned left = v.plant; left; left &= left - 1) {
         const int l = __builtin_ctz(left);
         if (plant_stops(&p->ray[l], list, place)) stopped |= 1u << l;
@@ -124,5 +149,6 @@ void plant_occlude(const struct RTCOccludedFunctionNArguments *a)
     unsigned         stopped = 0;
     for (uint32_t k = a->primID * (uint32_t)list->per_box; k < end && lanes & ~stopped; k++)
         stopped |= meet_any(p, list, k, lanes & ~stopped);
+    stopped |= p->late & lanes, p->late &= ~lanes;
     stop_rays(&of, stopped);
 }
