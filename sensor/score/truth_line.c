@@ -52,24 +52,44 @@ static Status read_target(TruthTarget *t, const json_t *from, const JsonStream *
     return STATUS_OK;
 }
 
+static int by_id(const void *a, const void *b)
+{
+    const uint64_t left = *(const uint64_t *)a, right = *(const uint64_t *)b;
+    return (left > right) - (left < right);
+}
+
+static bool has_twice(TruthFrame *frame)
+{
+    for (int i = 0; i < frame->count; i++) frame->sorted[i] = frame->target[i].id;
+    qsort(frame->sorted, (size_t)frame->count, sizeof *frame->sorted, by_id);
+    int i = 1;
+    while (i < frame->count && frame->sorted[i] != frame->sorted[i - 1]) i++;
+    return i < frame->count;
+}
+
+static bool make_room(TruthFrame *frame, size_t count)
+{
+    TruthTarget *target = realloc(frame->target, count * sizeof *target);
+    if (target) frame->target = target;
+    uint64_t *sorted = realloc(frame->sorted, count * sizeof *sorted);
+    if (sorted) frame->sorted = sorted;
+    if (target && sorted) frame->room = (int)count;
+    return target && sorted;
+}
+
 static Status read_targets(TruthFrame *out, const json_t *list, const JsonStream *s)
 {
     const size_t count = json_array_size(list);
     out->count = 0;
     if (!json_is_array(list) || count > 1 << 20) return wrong(s, "no list `targets`");
-    if (count > (size_t)out->room) {
-        TruthTarget *grown = realloc(out->target, 2 * count * sizeof *grown);
-        if (!grown) return STATUS_NO_MEMORY;
-        out->target = grown;
-        out->room = (int)(2 * count);
-    }
+    if (count > (size_t)out->room && !make_room(out, 2 * count)) return STATUS_NO_MEMORY;
     for (size_t i = 0; i < count; i++) {
         const int    guess = i > 0 ? out->target[i - 1].class_number : 0;
         const Status status = read_target(&out->target[i], json_array_get(list, i), s, guess);
         if (status != STATUS_OK) return status;
     }
     out->count = (int)count;
-    return STATUS_OK;
+    return has_twice(out) ? wrong(s, "the same `entity` twice in `targets`") : STATUS_OK;
 }
 
 /* ---- the frame ------------------------------------------------------------------------------------ */
@@ -218,6 +238,7 @@ Status truth_line_read(TruthFrame *out, const JsonStream *s)
 void truth_frame_free(TruthFrame *frame)
 {
     free(frame->target);
+    free(frame->sorted);
     free(frame->text);
     *frame = (TruthFrame){0};
 }

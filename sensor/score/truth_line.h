@@ -21,7 +21,8 @@ typedef struct TruthFrame {
     double       focal_px, r_cam_from_enu[9]; /* enu: at the sensor */
     Lens         lens;
     int          count, room;
-    TruthTarget *target; /* [count], in truth's order; kept from line to line, as text */
+    TruthTarget *target; /* [count], in truth's order; kept from line to line, as the next and text */
+    uint64_t    *sorted; /* [count] their ids, ascending */
     size_t       text_room;
     char        *text; /* what is wanted of the line */
 } TruthFrame;

@@ -220,16 +220,20 @@ static void test_bad_truth(void **state)
         "{\"frame\":0}\n", "[]\n", "{\"frame\":\"0\"\n\n", "0\n",
         "{\"frame\":6,\"time_s\":6,\"sensors\":[{\"bands\":[\"swir\"],\"width_px\":9,\"height_px\":9,"
         "\"hfov_deg\":4,\"vfov_deg\":3}],\"targets\":[]}\n"};
-    for (size_t i = 0; i <= sizeof lines / sizeof *lines; i++) {
+    enum { count = sizeof lines / sizeof *lines };
+    for (size_t i = 0; i < count + 2; i++) {
         ScoreFolder f;
         ScoreReport report;
         score_folder_open(&f);
         score_frame(&f, 5, "\"lwir\"");
         score_frame_end(&f);
-        if (i < sizeof lines / sizeof *lines) {
+        if (i < count) {
             fputs(lines[i], f.truth);
-        } else { /* a frame twice */
-            score_frame(&f, 5, "\"lwir\"");
+        } else { /* a frame twice; a target twice */
+            const bool target = i > count;
+            score_frame(&f, 5 + target, "\"lwir\"");
+            for (int k = 0; target && k < 3; k++)
+                score_target(&f, k ? "," : "", 9 - k % 2, "tank", (const int[4]){10, 10, 30, 20}, 40);
             score_frame_end(&f);
         }
         fputs("{\"frame\":5}\n", f.answers);
