@@ -167,9 +167,9 @@ class Tracks:
 def lines(frame, band, found, tracks):
     """Lines of answers.jsonl (`pitviper help answers`), without the times that only a node knows."""
     if not found:
-        return [json.dumps({'frame': frame, 'band': band, 'answer': 0, 'of': 0})]
-    return [json.dumps({'frame': frame, 'band': band, 'answer': i + 1, 'of': len(found), 'class': d.class_name,
-                        'box_px': [round(float(v), 2) for v in d.box], 'score': round(float(d.score), 4), 'track': t})
+        return [{'frame': frame, 'band': band, 'answer': 0, 'of': 0}]
+    return [{'frame': frame, 'band': band, 'answer': i + 1, 'of': len(found), 'class': d.class_name,
+             'box_px': [round(float(v), 2) for v in d.box], 'score': round(float(d.score), 4), 'track': t}
             for i, (d, t) in enumerate(zip(found, tracks))]
 
 
@@ -180,26 +180,53 @@ def best(found):
     return sorted(found, key=lambda d: -d.score)[:MOST]
 
 
-def run_folder(recogniser, out, name, bands=None):
-    """Answers to all frames of a run, or of each variant of a sweep, in the file `name` of its folder. Returns the count
-    of frames and of detections."""
-    out = pathlib.Path(out)
-    manifest = out / 'manifest.jsonl'
-    if manifest.exists():
-        variants = [json.loads(line) for line in manifest.read_text().splitlines()]
-        counts = [run_folder(recogniser, out / v['folder'], name, bands) for v in variants if v['status'] != 'failed']
-        return tuple(map(sum, zip(*counts))) if counts else (0, 0)
+def answer_frames(recogniser, out, bands, put):
+    """Calls put(line) with the answers to all frames of a run. Returns the count of frames and of detections."""
     tracks, frames, detections = Tracks(), 0, 0
-    part = out / (name + '.part')
-    with open(part, 'w', encoding='ascii') as file:
-        for frame, look in Folder(out, bands).frames(recogniser.bands_wanted):
-            band, plane = next(iter(look.planes.items()))
-            found = best(recogniser.find(look))
-            for line in lines(frame, band, found, tracks.number(frame, found, plane.shape[1])):
-                file.write(line + '\n')
-            frames, detections = frames + 1, detections + len(found)
-    os.replace(part, out / name)
+    for frame, look in Folder(out, bands).frames(recogniser.bands_wanted):
+        band, plane = next(iter(look.planes.items()))
+        found = best(recogniser.find(look))
+        for line in lines(frame, band, found, tracks.number(frame, found, plane.shape[1])):
+            put(line)
+        frames, detections = frames + 1, detections + len(found)
     return frames, detections
+
+
+def run_folder(recogniser, out, answers=None, bands=None):
+    """Answers a run, or each variant of a sweep: into answers.jsonl of its folder, or all into the file `answers`, where
+    the lines of a sweep say which variant they are of (`sequence`). Files are replaced when they are complete."""
+    out, counts = pathlib.Path(out), []
+    manifest = out / 'manifest.jsonl'
+    variants = [None]
+    if manifest.exists():
+        made = (json.loads(line) for line in manifest.read_text().splitlines())
+        variants = [v['folder'] for v in made if v['status'] != 'failed']
+    one = Whole(answers) if answers else None
+    for variant in variants:
+        folder = out / (variant or '')
+        file = one or Whole(folder / 'answers.jsonl')
+        which = {'sequence': variant} if variant and one else {}
+        counts.append(answer_frames(recogniser, folder, bands, lambda line: file.put({**which, **line})))
+        if not one:
+            file.close()
+    if one:
+        one.close()
+    return tuple(map(sum, zip(*counts))) if counts else (0, 0)
+
+
+class Whole:
+    """A file of JSON lines that has its name when it is complete."""
+
+    def __init__(self, path):
+        self.path, self.part = os.fspath(path), os.fspath(path) + '.part'
+        self.file = open(self.part, 'w', encoding='ascii')
+
+    def put(self, line):
+        self.file.write(json.dumps(line) + '\n')
+
+    def close(self):
+        self.file.close()
+        os.replace(self.part, self.path)
 
 
 def ring_look(frame, wanted, bands=None):
@@ -239,7 +266,8 @@ def main(recogniser, about):
     options = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument('out', metavar='OUT', nargs='?', help='folder of a run or sweep; answers go into it')
     options.add_argument('--memory', metavar='NAME', help='answers a living node by its ring of frames instead')
-    options.add_argument('--answers', default='answers.jsonl', metavar='FILE', help='name of the file in OUT')
+    options.add_argument('--answers', metavar='FILE', help='one file for all answers; default: answers.jsonl in OUT, of a '
+                         'sweep in the folder of each variant')
     options.add_argument('--bands', type=lambda s: s.split(','), help='bands to look at, the first of which is answered; '
                          f"default: the first that are there of {','.join(PREFERRED)}")
     options.add_argument('--wait', type=float, default=60, metavar='S', help='gives up when there is no node by then')

@@ -4,13 +4,15 @@
     etc/examples/recognise_hottest.py OUT                 answers the frames of a run or sweep: OUT/answers.jsonl
     etc/examples/recognise_hottest.py --memory seeker     answers a living node (publish.detections_port)
 
-Of medians of 3 x 3, so that no defective pixel is the hottest. The box holds what is connected with the brightest pixel and nearer to it than to the median of the image; the score says how
-far it stands out. etc/examples/recognise_hottest.c is the same in C. All of it: etc/reference/recognisers.md."""
+Of medians of 5 x 5, so that no defective pixel is the hottest. The box holds what is connected with it and warmer than its
+surroundings; the score says how far it stands out of them. etc/examples/recognise_hottest.c is the same in C. All of it:
+etc/reference/recognisers.md."""
 import numpy
 
 import recognise
 
-REACH_PX = 64  # a box reaches no farther from the brightest pixel
+REACH_PX = 32  # surroundings of the brightest pixel on each side, and the farthest that a box reaches
+LEVEL = 0.1    # of the way from their median to it: what is above belongs to the box
 
 
 def connected(mask, row, column):
@@ -40,13 +42,13 @@ class Hottest:
     def find(self, look):
         plane = recognise.despeckled(next(iter(look.planes.values())))
         row, column = numpy.unravel_index(numpy.argmax(plane), plane.shape)
-        peak, median = float(plane[row, column]), float(numpy.median(plane))
-        if not peak > median:
-            return []  # an image of one value
         top, left = max(row - REACH_PX, 0), max(column - REACH_PX, 0)
         near = plane[top:row + REACH_PX + 1, left:column + REACH_PX + 1]
-        box = bounds(connected(near > (peak + median) / 2, row - top, column - left))
-        spread = float(numpy.median(numpy.abs(plane - median)))  # half of the pixels are within it
+        peak, median = float(plane[row, column]), float(numpy.median(near))
+        if not peak > median:
+            return []  # an image of one value
+        box = bounds(connected(near > median + LEVEL * (peak - median), row - top, column - left))
+        spread = float(numpy.median(numpy.abs(near - median)))  # half of the pixels are within it
         score = (peak - median) / (peak - median + 10 * spread)
         return [recognise.Detection((box[0] + left, box[1] + top, box[2] + left, box[3] + top), score, 'hot')]
 
