@@ -144,6 +144,7 @@ static const struct Command {
     {"explain", explain_command, "what one pixel of a saved frame is made of: rays, surfaces, light, air, detector",
      true, true},
     {"regress", regress_command, "re-render recorded exercises and compare them with approved baselines", true, false},
+    {"score", score_command, "score a recogniser's answers against the truth of a run", true, false},
     {"inspect", inspect_command, "list the entities of a recording, what they did, what was malformed", true, true},
     {"check", check_command, "validate a configuration file; or print one to start from", true, true},
     {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true, false},

@@ -14,6 +14,8 @@ int replay_command(int argc, char **argv);
 int frame_command(int argc, char **argv);
 /* `pitviper explain OUT FRAME X Y`: what one pixel of a saved frame is made of. */
 int explain_command(int argc, char **argv);
+/* `pitviper score OUT ANSWERS`: a recogniser's answers against the truth of a run. */
+int score_command(int argc, char **argv);
 /* `pitviper inspect LOG`: entities, their times and events, senders, and malformed PDUs. */
 int inspect_command(int argc, char **argv);
 /* `pitviper check`: validates a settings file before an exercise depends on it. */

@@ -17,6 +17,7 @@ static const Reference *const topics[] = {
     &reference_pairs,
     &reference_coco,
     &reference_answers,
+    &reference_score,
     &reference_manifest,
     &reference_sheet,
     &reference_data_pdu,

@@ -48,8 +48,8 @@ typedef struct Reference {
 /* In the order of the data path. */
 extern const Reference reference_products, reference_truth, reference_run, reference_exr, reference_png, reference_raw,
     reference_profile, reference_radar, reference_radar_map, reference_radar_scan, reference_radar_azimuths,
-    reference_pairs, reference_coco, reference_answers, reference_manifest, reference_sheet, reference_data_pdu,
-    reference_stream_pdu, reference_radar_pdu, reference_pdus, reference_regress;
+    reference_pairs, reference_coco, reference_answers, reference_score, reference_manifest, reference_sheet,
+    reference_data_pdu, reference_stream_pdu, reference_radar_pdu, reference_pdus, reference_regress;
 
 /* Names of the topics, separated by blanks. */
 void reference_list(FILE *to);

@@ -1,11 +1,12 @@
 /* sensor/reference/reference_labels.c: products for training and judging a recogniser, and of many runs: pairs.jsonl,
- * coco.json, answers.jsonl, the manifest of a sweep, the baseline of a regression. */
+ * coco.json, answers.jsonl, score.json, the manifest of a sweep, the baseline of a regression. */
 #include "sensor/reference/reference.h"
 
 #include "render/frame/planes.h"
 #include "sensor/commands/sweep/sweep.h"
 #include "sensor/publish/consumers/consume_pairs.h"
 #include "sensor/publish/memory/detections.h"
+#include "sensor/score/score_fields.h"
 
 static const ReferenceWord words[] = {REFERENCE_WORD_BAND};
 
@@ -126,6 +127,33 @@ const Reference reference_answers = {
         "    if answer['of'] == 0:               # nothing was found\n"
         "        continue\n"
         "    print(answer['frame'], answer['band'], answer['class'], answer['box_px'], answer['score'], answer['latency_ms'])\n",
+};
+
+static const ReferenceWord score_words[] = {
+    REFERENCE_WORD_BAND,
+    {"CLASS", "tank, apc, truck ...: class of truth.jsonl", NULL, NULL},
+    {"TRUE", "a class of truth.jsonl, or false: where nothing is", NULL, NULL},
+    {"ANSWERED", "a class of truth.jsonl, unknown, or missed", NULL, NULL},
+    {"WORD", "a recogniser's own word", NULL, NULL},
+};
+
+const Reference reference_score = {
+    .topic = "score.json",
+    .file = "score.json",
+    .title = "a recogniser's answers against the truth",
+    .about =
+        "Of `pitviper score OUT` (etc/reference/score.md), in OUT or where --out says. What a target to be found is,\n"
+        "and when an answer names it, is in that page. Bounds are of 95 %, over sequences: hosts, variants of a sweep.",
+    .table = &score_fields,
+    .word = REFERENCE_FIELDS(score_words),
+    .python = "import json\n"
+              "score = json.load(open('score.json'))\n"
+              "for r in score['recognisers']:\n"
+              "    print(r['name'], r['total']['found'], 'of', r['total']['chances'], 'found')\n"
+              "    for bin in r['against']['range_m']:\n"
+              "        if 'detection' in bin:\n"
+              "            rate = bin['detection']\n"
+              "            print(bin['from'], bin.get('to'), rate['value'], rate['low'], rate['high'])\n",
 };
 
 /* ---- manifest.jsonl and the page of a sweep ------------------------------------------------------ */

@@ -27,6 +27,7 @@ const Reference reference_products = {
         "    pairs.jsonl, pairs/              help pairs     each frame without its target, without noise; --pairs\n"
         "    coco.json                        help coco      boxes and masks; --coco\n"
         "    answers.jsonl                    help answers   a recogniser's detections; --set publish.detections_port=PORT\n"
+        "    score.json                       help score.json  these against the truth; pitviper score OUT\n"
         "    manifest.jsonl, V/variant.json   help manifest  of --sweep: a line per variant; V/ is a folder of "
         "this kind\n"
         "    manifest.html, V/thumbnail.png   help sheet     of --sweep: thumbnails\n"

@@ -160,7 +160,11 @@ static void what_is_written_of_axes(void **state)
     svg_curve_point(to, 1, 2.25);
     svg_curve_end(to);
     svg_circle(to, &(SvgPen){.colour = SVG_BLUE}, 5, 6, 7);
+    svg_area_begin(to, SVG_PLUM, 0.25);
+    svg_curve_point(to, 3, 4);
+    svg_curve_end(to);
     fclose(to);
+    CHECK(times_of("<polygon class=\"pl\" fill=\"#8e44ad\" fill-opacity=\"0.25\" points=\" 3.0,4.0\"/>") == 1);
     CHECK(times_of(":00<") == 0 && times_of(">6<") == 1 && times_of(">18<") == 1);
     CHECK(
         times_of(
@@ -180,8 +184,8 @@ static void what_is_written_of_axes(void **state)
     fclose(to);
     CHECK(times_of("width=\"320\" height=\"200\" viewBox=\"0 0 320 200\"") == 1 &&
           times_of("<title>name &amp; more</title>") == 1);
-    /* nine colours, each twice: filled, and as a stroke */
-    CHECK(times_of(".pvp .") == 1 + 2 * 9 && times_of("{fill:none;stroke:") == 9 && times_of(">below<") == 1);
+    /* ten colours, each twice: filled, and as a stroke */
+    CHECK(times_of(".pvp .") == 1 + 2 * 10 && times_of("{fill:none;stroke:") == 10 && times_of(">below<") == 1);
     free(text);
 }
 

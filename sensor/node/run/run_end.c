@@ -2,6 +2,29 @@
 #include "sensor/node/run/host_run_private.h"
 
 #include "sensor/instruments/radar.h"
+#include "sensor/score/score.h"
+
+/* What `pitviper score` says of the answers that came. */
+static void score_answers(const Run *run, const RunEnd *end)
+{
+    enum { frames_most = 100000 }; /* some ten seconds */
+    const Config *config = &run->options.config;
+    ScoreRequest  asked = {.out = end->folder, .rules = score_default_rules()};
+    ScoreReport   report;
+    if (!config->publish.detections_port || !config->publish.truth || end->result->answers.lines == 0) return;
+    if (log_is_quiet()) return;
+    if (end->result->frames > frames_most) {
+        log_print("the answers in %s/answers.jsonl are scored by `pitviper score %s`\n", end->folder, end->folder);
+        return;
+    }
+    asked.rules.min_pixels = config->publish.coco_min_pixels;
+    asked.rules.min_visible = config->publish.coco_min_visible;
+    asked.rules.min_snr = config->publish.coco_min_snr;
+    if (score_run(&report, &asked) != STATUS_OK) return; /* which has been logged, and is no failure of the run */
+    score_print(stdout, &report, false);
+    fflush(stdout);
+    score_report_free(&report);
+}
 
 Status run_conclude(const Run *run, const RunEnd *end)
 {
@@ -23,6 +46,7 @@ Status run_conclude(const Run *run, const RunEnd *end)
     if (result->at_limit > 0) /* its warning came when it was */
         log_print("the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)\n", result->at_limit,
                   result->frames);
+    score_answers(run, end);
     if (result->buried > 0)
         log_warn("%s: the eye was below the ground in %d of %d frames and saw nothing of use%s", name, result->buried,
                  result->frames,

@@ -172,7 +172,7 @@ static const char *const marks[] = {"run.json", "truth.jsonl"};
 
 void frame_files_clear(const char *out)
 {
-    static const char *const beside[] = {"pairs", "pairs.jsonl", "coco.json", "answers.jsonl"};
+    static const char *const beside[] = {"pairs", "pairs.jsonl", "coco.json", "answers.jsonl", "score.json"};
     char                     path[path_size];
     bool                     earlier = !too_long(out) && frame_files_earlier(path, out);
     if (too_long(out)) return;

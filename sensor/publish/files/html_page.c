@@ -1,10 +1,14 @@
 /* sensor/publish/files/html_page.c: reports as one HTML file: its style, its embedded images. */
 #include "sensor/publish/files/html_page.h"
 #include "pitviper_output.h"
+#include "sensor/publish/images/image_file.h"
 
 #include <errno.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <unistd.h>
+
+enum { png_most = 32 << 20 };
 
 static const char style[] =
     ":root{color-scheme:light dark;--line:#8884;--good:#2a7d3f;--bad:#c0392b}\n"
@@ -17,7 +21,9 @@ static const char style[] =
     "img{max-width:100%;image-rendering:pixelated}figure{display:inline-block;margin:.3rem .8rem .8rem 0}\n"
     "figcaption{font-size:.85rem}code{font-family:ui-monospace,monospace}\n";
 
-FILE *html_begin(const char *path, const char *title)
+FILE *html_begin(const char *path, const char *title) { return html_begin_styled(path, title, ""); }
+
+FILE *html_begin_styled(const char *path, const char *title, const char *rules)
 {
     FILE *page = output_begin(path, OUTPUT_STREAM);
     if (!page) {
@@ -28,7 +34,7 @@ FILE *html_begin(const char *path, const char *title)
           "<meta name=\"viewport\" content=\"width=device-width\">\n<title>",
           page);
     html_text(page, "%s", title);
-    fprintf(page, "</title>\n<style>\n%s</style></head><body>\n<h1>", style);
+    fprintf(page, "</title>\n<style>\n%s%s</style></head><body>\n<h1>", style, rules);
     html_text(page, "%s", title);
     fputs("</h1>\n", page);
     return page;
@@ -87,6 +93,20 @@ void html_image(FILE *page, const char *type, const void *bytes, size_t count, c
     fputs("\" alt=\"", page);
     escape(page, alt);
     fputs("\">", page);
+}
+
+bool html_png(FILE *page, const void *values, int width, int height, int channels, int bits, const char *scratch,
+              const char *alt)
+{
+    char  *bytes;
+    size_t octets;
+    if (image_write_png(scratch, values, width, height, channels, bits) != STATUS_OK) return false;
+    const bool ok = text_read_file(&bytes, &octets, "report", scratch, png_most) == STATUS_OK;
+    unlink(scratch);
+    if (!ok) return false;
+    html_image(page, "png", bytes, octets, alt);
+    free(bytes);
+    return true;
 }
 
 Status html_end(FILE *page, const char *path)

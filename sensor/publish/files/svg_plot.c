@@ -9,7 +9,8 @@ static const struct {
     const char *class, *light, *dark;
 } colours[] = {{"t", SVG_INK, "#ddd"},       {"d", SVG_DIM, "#999"},    {"g", SVG_GRID, "#3a3a3e"},
                {"ax", SVG_AXIS, "#777"},     {"p", SVG_GREY, "#888"},   {"f", SVG_BLUE, "#6db3f2"},
-               {"df", SVG_AMBER, "#f59e4b"}, {"s", SVG_RED, "#ff7b6b"}, {"ok", SVG_GREEN, "#6fcf8a"}};
+               {"df", SVG_AMBER, "#f59e4b"}, {"s", SVG_RED, "#ff7b6b"}, {"ok", SVG_GREEN, "#6fcf8a"},
+               {"pl", SVG_PLUM, "#c79be6"}};
 
 enum { colour_count = sizeof colours / sizeof *colours };
 
@@ -82,6 +83,12 @@ void svg_curve_begin(FILE *to, const SvgPen *pen)
 {
     open_element(to, "polyline", pen);
     fputs(" stroke-linejoin=\"round\" points=\"", to);
+}
+
+void svg_area_begin(FILE *to, const char *colour, double share)
+{
+    open_element(to, "polygon", &(SvgPen){.colour = colour});
+    fprintf(to, " fill-opacity=\"%g\" points=\"", share);
 }
 
 void svg_curve_point(FILE *to, double x, double y) { fprintf(to, " %.1f,%.1f", x, y); }

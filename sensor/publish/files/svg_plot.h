@@ -15,6 +15,7 @@
 #define SVG_AMBER "#c2570c"
 #define SVG_RED   "#c0392b"
 #define SVG_GREEN "#217a3c"
+#define SVG_PLUM  "#8e44ad"
 
 typedef struct SvgPen {
     const char *colour;
@@ -53,6 +54,8 @@ __attribute__((format(printf, 6, 7))) void svg_text(FILE *to, const char *colour
 void svg_line(FILE *to, const SvgPen *pen, double x0, double y0, double x1, double y1);
 void svg_circle(FILE *to, const SvgPen *pen, double x, double y, double radius_px);
 void svg_curve_begin(FILE *to, const SvgPen *pen);
+/* A filled area, of this share of its colour; points and end as of a curve. */
+void svg_area_begin(FILE *to, const char *colour, double share);
 void svg_curve_point(FILE *to, double x, double y);
 void svg_curve_end(FILE *to);
 /* A row of the legend: a stroke from x, its middle at y, and its text. */

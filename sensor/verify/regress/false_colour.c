@@ -2,12 +2,10 @@
 #include "sensor/verify/regress/regress_private.h"
 
 #include "sensor/publish/files/html_page.h"
-#include "sensor/publish/images/image_file.h"
 
 #include <stdlib.h>
-#include <unistd.h>
 
-enum { png_most = 32 << 20, bar_width = 120, bar_height = 12 };
+enum { bar_width = 120, bar_height = 12 };
 
 static int compare_floats(const void *a, const void *b)
 {
@@ -83,20 +81,6 @@ static void colour_of(uint8_t out[3], float value, Colours colours, Scale scale)
     }
 }
 
-/* Through a temporary file, whose octets are embedded in the page. */
-static bool put_png(FILE *page, const uint8_t *rgb, int width, int height, const char *scratch, const char *alt)
-{
-    char  *bytes;
-    size_t octets;
-    if (image_write_png(scratch, rgb, width, height, 3, 8) != STATUS_OK) return false;
-    const bool ok = text_read_file(&bytes, &octets, "regress", scratch, png_most) == STATUS_OK;
-    unlink(scratch);
-    if (!ok) return false;
-    html_image(page, "png", bytes, octets, alt);
-    free(bytes);
-    return true;
-}
-
 /* Display gamma. */
 static uint8_t shown(float value, Scale scale)
 {
@@ -119,7 +103,7 @@ bool false_colour_picture(FILE *page, const FalseColour *p, int wanted_width, co
                 for (int k = 0; k < 3; k++) to[k] = shown(p->plane[k][from], p->scale);
             else colour_of(to, p->plane[0][from], p->colours, p->scale);
         }
-    const bool ok = put_png(page, rgb, (int)w, (int)h, scratch, alt);
+    const bool ok = html_png(page, rgb, (int)w, (int)h, 3, 8, scratch, alt);
     free(rgb);
     return ok;
 }
@@ -133,7 +117,7 @@ bool false_colour_legend(FILE *page, Colours colours, Scale scale, const char *u
             colour_of(rgb + 3 * (y * bar_width + x), (float)(scale.low + t * (scale.high - scale.low)), colours, scale);
         }
     html_text(page, "%.4g ", scale.low);
-    if (!put_png(page, rgb, bar_width, bar_height, scratch, "scale of colours")) return false;
+    if (!html_png(page, rgb, bar_width, bar_height, 3, 8, scratch, "scale of colours")) return false;
     html_text(page, " %.4g%s%s", scale.high, *unit ? " " : "", unit);
     return true;
 }
