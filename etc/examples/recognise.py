@@ -113,6 +113,8 @@ class Folder:
 
     def __init__(self, out, bands=None):
         self.out = pathlib.Path(out)
+        if not (self.out / 'run.json').exists():
+            raise FileNotFoundError(f'{self.out}: no run.json; name the folder that `pitviper replay LOG --out OUT` wrote')
         settings = json.loads((self.out / 'run.json').read_text())['settings']
         half = math.radians(float(settings['sensor.hfov_deg'])) / 2  # the seeker's own field of view
         self.focal_px = float(settings['sensor.width_px']) / 2 / math.tan(half)
@@ -180,53 +182,57 @@ def best(found):
     return sorted(found, key=lambda d: -d.score)[:MOST]
 
 
-def answer_frames(recogniser, out, bands, put):
-    """Calls put(line) with the answers to all frames of a run. Returns the count of frames and of detections."""
+class Whole:
+    """A file of JSON lines that has its name only when it is complete."""
+
+    def __init__(self, path):
+        self.path, self.part = os.fspath(path), os.fspath(path) + '.part'
+
+    def __enter__(self):
+        self.file = open(self.part, 'w', encoding='ascii')
+        return self
+
+    def put(self, line):
+        self.file.write(json.dumps(line) + '\n')
+
+    def __exit__(self, error, *_):
+        self.file.close()
+        if error:
+            os.unlink(self.part)
+        else:
+            os.replace(self.part, self.path)
+
+
+def answer_frames(recogniser, folder, file, sequence=None):
+    """Answers all frames of a Folder. Returns the count of frames and of detections."""
     tracks, frames, detections = Tracks(), 0, 0
-    for frame, look in Folder(out, bands).frames(recogniser.bands_wanted):
+    for frame, look in folder.frames(recogniser.bands_wanted):
         band, plane = next(iter(look.planes.items()))
         found = best(recogniser.find(look))
         for line in lines(frame, band, found, tracks.number(frame, found, plane.shape[1])):
-            put(line)
+            file.put({**line, 'sequence': sequence} if sequence else line)
         frames, detections = frames + 1, detections + len(found)
     return frames, detections
 
 
 def run_folder(recogniser, out, answers=None, bands=None):
     """Answers a run, or each variant of a sweep: into answers.jsonl of its folder, or all into the file `answers`, where
-    the lines of a sweep say which variant they are of (`sequence`). Files are replaced when they are complete."""
-    out, counts = pathlib.Path(out), []
-    manifest = out / 'manifest.jsonl'
-    variants = [None]
+    the lines of a sweep say which variant they are of (`sequence`). Returns the count of frames and of detections."""
+    out = pathlib.Path(out)
+    manifest, variants = out / 'manifest.jsonl', [None]
     if manifest.exists():
         made = (json.loads(line) for line in manifest.read_text().splitlines())
         variants = [v['folder'] for v in made if v['status'] != 'failed']
-    one = Whole(answers) if answers else None
-    for variant in variants:
-        folder = out / (variant or '')
-        file = one or Whole(folder / 'answers.jsonl')
-        which = {'sequence': variant} if variant and one else {}
-        counts.append(answer_frames(recogniser, folder, bands, lambda line: file.put({**which, **line})))
-        if not one:
-            file.close()
-    if one:
-        one.close()
+    folders = [(v, Folder(out / v if v else out, bands)) for v in variants]
+    counts = []
+    if answers:
+        with Whole(answers) as file:
+            counts = [answer_frames(recogniser, folder, file, v) for v, folder in folders]
+    else:
+        for _, folder in folders:
+            with Whole(folder.out / 'answers.jsonl') as file:
+                counts.append(answer_frames(recogniser, folder, file))
     return tuple(map(sum, zip(*counts))) if counts else (0, 0)
-
-
-class Whole:
-    """A file of JSON lines that has its name when it is complete."""
-
-    def __init__(self, path):
-        self.path, self.part = os.fspath(path), os.fspath(path) + '.part'
-        self.file = open(self.part, 'w', encoding='ascii')
-
-    def put(self, line):
-        self.file.write(json.dumps(line) + '\n')
-
-    def close(self):
-        self.file.close()
-        os.replace(self.part, self.path)
 
 
 def ring_look(frame, wanted, bands=None):
