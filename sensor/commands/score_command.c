@@ -2,7 +2,7 @@
 #include "sensor/commands/commands.h"
 
 #include "sensor/commands/overwrite.h"
-#include "sensor/score/score.h"
+#include "sensor/score/score_page.h"
 #include "sensor/settings/command_line.h"
 
 #include <sys/stat.h>
@@ -19,7 +19,7 @@ static const char help[] =
     "  lines of JSON        frame, band, class, score, and box_px [left, top, right, bottom] or los_deg [azimuth from\n"
     "                       north, elevation]; optional track, range_m, latency_ms (`pitviper help answers`)\n"
     "  or COCO results      [{image_id, category_id, bbox, score}], by the images of OUT/coco.json\n"
-    "Writes score.json (`pitviper help score.json`) into OUT.\n"
+    "Writes score.json (`pitviper help score.json`) and score.html into OUT.\n"
     "\n"
     "  --bands LIST         bands to be scored (default: those that were answered)\n"
     "  --score S            answers of a lower score do not count in rates and confusion (0)\n"
@@ -32,8 +32,8 @@ static const char help[] =
     "  --min-visible SHARE  those that are more hidden, too, 0 .. 1 (0)\n"
     "  --min-snr SNR        and those of less SNR in the band, 0 .. 1000 (0.1). Where OUT has a coco.json, that\n"
     "                       decides, and these three have no effect\n"
-    "  --out FOLDER         or -o: where score.json goes (OUT)\n"
-    "  --overwrite          replace it; without it that is an error\n"
+    "  --out FOLDER         or -o: where these go (OUT)\n"
+    "  --overwrite          replace them; without it that is an error\n"
     "  --help               print this help\n";
 
 typedef struct ScoreOptions {
@@ -158,15 +158,15 @@ static bool is_folder(const char *path)
 
 int score_command(int argc, char **argv)
 {
-    static const char *const names[] = {"score.json"};
+    static const char *const names[] = {"score.json", "score.html"};
     ScoreOptions             o;
     ScoreReport              report = {0};
-    OutputPath               path[1];
+    OutputPath               path[2];
     const int                stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
     if (!is_folder(o.request.out)) return 1;
     const OutputFiles files = {.command = "score",
-                               .count = 1,
+                               .count = 2,
                                .name = names,
                                .given = o.out ? o.out : o.request.out,
                                .model = "",
@@ -176,6 +176,7 @@ int score_command(int argc, char **argv)
     if (status == STATUS_OK) status = score_run(&report, &o.request);
     if (status == STATUS_OK) score_print(stdout, &report, true);
     if (status == STATUS_OK) status = score_write_json(&report, path[0]);
+    if (status == STATUS_OK) status = score_write_page(&report, path[1]);
     score_report_free(&report);
     return status == STATUS_OK ? 0 : 1;
 }

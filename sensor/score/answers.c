@@ -79,6 +79,7 @@ static Status add(Answers *answers, const Answer *one, const JsonStream *s)
     answers->one[answers->count++] = *one;
     answers->bands |= 1u << one->band;
     answers->lines_of_sight |= one->line_of_sight;
+    answers->tracks |= one->track != 0;
     return STATUS_OK;
 }
 
@@ -202,7 +203,9 @@ static Status read_lines(Answers *answers, JsonStream *s, int sequence, const An
         bool   more;
         Status status = json_stream_line(&more, s);
         if (status != STATUS_OK || !more) return status;
-        json_t *line = json_loadb(s->text, s->length, 0, NULL);
+        json_t *line;
+        status = json_member_load(&line, s->text, s->length);
+        if (status == STATUS_NO_MEMORY) return status;
         if (!line && s->cut) {
             log_warn("score: %s:%ld: the last line is not complete, and left out", s->path, s->line);
             return STATUS_OK;
@@ -256,7 +259,9 @@ static Status read_results(Answers *answers, JsonStream *s, int sequence, const 
     while (status == STATUS_OK) {
         status = json_lists_item(&more, &lists);
         if (status != STATUS_OK || !more) break;
-        json_t *item = json_loadb(s->text, s->length, 0, NULL);
+        json_t *item;
+        status = json_member_load(&item, s->text, s->length);
+        if (status == STATUS_NO_MEMORY) break;
         status = read_result(answers, item, s, sequence, images, of_variant);
         json_decref(item);
     }

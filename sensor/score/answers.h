@@ -25,10 +25,10 @@ typedef struct Answer {
 
 typedef struct Answers {
     size_t     count, room;
-    Answer    *one;   /* sorted by answers_order */
-    unsigned   bands; /* of any */
-    bool       lines_of_sight;
-    int        words, words_room; /* those that are no class, in the order of their coming */
+    Answer    *one;                    /* sorted by answers_order */
+    unsigned   bands;                  /* of any */
+    bool       lines_of_sight, tracks; /* some are, or have */
+    int        words, words_room;      /* those that are no class, in the order of their coming */
     ScoreWord *word;
 } Answers;
 

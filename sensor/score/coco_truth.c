@@ -122,7 +122,9 @@ static Status add_items(CocoTruth *coco, JsonLists *lists, bool images)
     for (;;) {
         Status status = json_lists_item(&more, lists);
         if (status != STATUS_OK || !more) return status;
-        json_t *item = json_loadb(s->text, s->length, 0, NULL);
+        json_t *item;
+        status = json_member_load(&item, s->text, s->length);
+        if (status == STATUS_NO_MEMORY) return status;
         if (!json_is_object(item)) status = wrong(s, "an item that is no JSON object");
         else status = images ? add_image(&coco->images, item, s) : add_target(coco, item, s);
         json_decref(item);

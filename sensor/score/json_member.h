@@ -6,6 +6,15 @@
 #include "render/scene/view.h"
 #include "sensor/frame/json_object.h"
 
+/* Parses a piece. STATUS_BAD_VALUE, not logged: it is not JSON; STATUS_NO_MEMORY. *out is then NULL. */
+static inline Status json_member_load(json_t **out, const char *text, size_t length)
+{
+    json_error_t error;
+    *out = json_loadb(text, length, 0, &error);
+    if (*out) return STATUS_OK;
+    return json_error_code(&error) == json_error_out_of_memory ? STATUS_NO_MEMORY : STATUS_BAD_VALUE;
+}
+
 /* A finite number; NaN: absent, null or none. */
 static inline double json_member_number(const json_t *object, const char *key)
 {
@@ -54,6 +63,13 @@ static inline bool json_member_entity(uint64_t *out, const json_t *object)
     if (!text || !dis_entity_id_parse(&id, text)) return false;
     *out = (uint64_t)id.site << 32 | (uint64_t)id.application << 16 | id.entity;
     return true;
+}
+
+/* The same number as text. */
+static inline void json_member_entity_text(char out[dis_id_text_size], uint64_t entity)
+{
+    const DisEntityId id = {(uint16_t)(entity >> 32), (uint16_t)(entity >> 16), (uint16_t)entity};
+    dis_entity_id_text(out, id);
 }
 
 #endif

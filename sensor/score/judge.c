@@ -1,5 +1,5 @@
 /* sensor/score/judge.c: judges the answers of a frame: rates, confusion, errors, ages. */
-#include "sensor/score/judge.h"
+#include "sensor/score/judge_private.h"
 #include "sensor/frame/target_record.h"
 
 #include <stdlib.h>
@@ -258,6 +258,9 @@ static Status judge_band(Judge *j, const TruthFrame *frame, Band band, int seque
         of.counting++;
     match_run(&j->match, &j->rules, 0);
     count_matches(j, &of);
+    judge_worst(j, frame, band, of.counting);
+    status = judge_tracks(j, frame, band, of.counting);
+    if (status != STATUS_OK) return status;
     mark_centres(j);
     return precision_add(&j->precision, band, j->target, coco_boxes(j, coco, list, coco_count), &j->match, j->centre,
                          j->any);
@@ -271,17 +274,19 @@ Status judge_frame(Judge *j, const TruthFrame *frame, int sequence, const CocoTr
     return status;
 }
 
-void judge_end_sequence(Judge *j)
+Status judge_end_sequence(Judge *j)
 {
     rates_end_sequence(&j->total);
     for (int b = 0; b < BAND_COUNT; b++) rates_end_sequence(&j->band[b]);
     for (int which = 0; which < AGAINST_COUNT; which++)
         for (int bin = 0; bin < score_bins_max; bin++) rates_end_sequence(&j->against[which][bin]);
+    return judge_end_tracks(j);
 }
 
 void judge_free(Judge *j)
 {
     precision_free(&j->precision);
+    for (int b = 0; b < BAND_COUNT; b++) tracks_destroy(j->tracks[b]);
     match_free(&j->match);
     free(j->age_ms);
     free(j->target);

@@ -5,6 +5,8 @@
 #include "sensor/score/answers.h"
 #include "sensor/score/precision.h"
 #include "sensor/score/rates.h"
+#include "sensor/score/tracks.h"
+#include "sensor/score/worst.h"
 
 typedef struct ErrorSums {
     long long count, ranges;
@@ -14,13 +16,17 @@ typedef struct ErrorSums {
 typedef struct Judge {
     ScoreRules     rules;
     const Answers *answers;
-    unsigned       bands; /* scored */
+    unsigned       bands;    /* scored */
+    const char    *sequence; /* name of the one that is being read */
     long long      detections, aged, ignored;
 
     RateSums       total, band[BAND_COUNT], against[AGAINST_COUNT][score_bins_max];
     ScoreConfusion confusion;
     ErrorSums      errors;
     Precision      precision;
+    Tracks        *tracks[BAND_COUNT]; /* of the sequence; NULL: none yet */
+    TracksScore    track_score;
+    WorstCases     missed, false_alarms;
     long long      late;
     size_t         ages, ages_room;
     float         *age_ms; /* one an answered frame and band */
@@ -33,9 +39,10 @@ typedef struct Judge {
     Answer          *young;        /* those that are not too old */
 } Judge;
 
-/* Frames in the order of truth. coco: of the sequence; NULL: it has none. STATUS_NO_MEMORY. */
+/* Frames in the order of truth. coco: of the sequence; NULL: it has none. STATUS_NO_MEMORY; STATUS_BAD_VALUE, logged:
+ * truth that is at odds with itself. */
 Status judge_frame(Judge *judge, const TruthFrame *frame, int sequence, const CocoTruth *coco);
-void   judge_end_sequence(Judge *judge);
+Status judge_end_sequence(Judge *judge);
 /* After the last. name and file are left. STATUS_NO_MEMORY. */
 Status judge_report(ScoreRecogniser *out, Judge *judge);
 void   judge_free(Judge *judge);

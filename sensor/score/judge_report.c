@@ -119,6 +119,9 @@ Status judge_report(ScoreRecogniser *out, Judge *j)
     report_errors(&out->errors, &j->errors);
     report_ages(&out->ages, j);
     out->confusion = j->confusion;
+    out->tracks = j->track_score;
+    out->missed = j->missed;
+    out->false_alarms = j->false_alarms;
     precision_sort(p);
     out->points = precision_curve(out->curve, p, out->total.chances, out->total.frames);
     Status status = report_words(out, j->answers);

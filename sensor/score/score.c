@@ -176,11 +176,12 @@ static Status judge_sequence(ScoreWork *w, int sequence)
     CocoTruth   coco = {0};
     const char *out = w->request->out, *name = w->sequences.name[sequence];
     Status      status = STATUS_OK;
-    bool        there = sequence_path(path, out, name, "coco.json") && file_is_regular(why, path);
+    for (int i = 0; i < score_recognisers_max; i++) w->judge[i].sequence = name;
+    bool there = sequence_path(path, out, name, "coco.json") && file_is_regular(why, path);
     if (there) status = coco_truth_read(&coco, path, true);
     if (status == STATUS_OK && sequence_path(path, out, name, "truth.jsonl"))
         status = judge_lines(w, path, sequence, there ? &coco : NULL);
-    for (int i = 0; i < score_recognisers_max; i++) judge_end_sequence(&w->judge[i]);
+    for (int i = 0; i < score_recognisers_max && status == STATUS_OK; i++) status = judge_end_sequence(&w->judge[i]);
     coco_truth_free(&coco);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "sensor/frame/json_object.h"
 #include "sensor/frame/target_record.h"
 #include "sensor/score/report.h"
+#include "sensor/score/track_fields.h"
 
 #define IN_RATES(member)      FIELD_MEMBER(ScoreRates, member)
 #define IN_SHARE(member)      FIELD_MEMBER(ScoreShare, member)
@@ -30,33 +31,37 @@ static const Field share_rows[] = {
     {"high", "", "", "", "upper bound of 95 %, over sequences", IN_SHARE(high)},
 };
 
-static const Field rates_rows[] = {
-    {"from", "as the quantity", "", "except in a bin", "first value of the bin", IN_RATES(from)},
-    {"to", "as the quantity", "", "except in a bin; of the last bin, which has no end", "value behind the bin",
-     IN_RATES(to)},
-    {"chances", "", "", "", "targets to be found: one a target, frame and band", IN_RATES(chances)},
-    {"found", "", "", "", "those that an answer names, whatever its class", IN_RATES(found)},
-    {"recognised", "", "", "", "those that an answer names with their class", IN_RATES(recognised)},
-    {"sequences", "", "", "", "sequences that have such a target", IN_RATES(sequences)},
-    {"samples", "", "", "", "effective number of sequences: 1 over the sum of squares of their shares of the chances",
-     IN_RATES(samples)},
-    {"detection", "", "", "without a target to be found", "detection rate: found of chances", .in = detection_of,
-     FIELD_OBJECT(share_rows)},
-    {"recognition", "", "", "without a target to be found", "recognised of chances", .in = recognition_of,
-     FIELD_OBJECT(share_rows)},
-    {"frames", "", "", "",
-     "frames times bands that were scored; of a bin: those whose largest target to be found is in it",
-     IN_RATES(frames)},
-    {"frames_answered", "", "", "", "of these: with an answer, also one that found nothing", IN_RATES(frames_answered)},
-    {"false_alarms", "", "", "", "answers in these frames that name nothing", IN_RATES(false_alarms)},
-    {"deg2", "deg2", "", "", "fields of view of these frames, together", IN_RATES(deg2)},
-    {"km2", "km2", "on the map", "", "visible ground of these frames, together; 0: not known", IN_RATES(km2)},
-    {"per_frame", "", "", "without a frame", "false alarms a frame", .in = per_frame_of, FIELD_OBJECT(share_rows)},
-    {"per_deg2", "1/deg2", "", "without a frame", "false alarms a square degree", .in = per_deg2_of,
-     FIELD_OBJECT(share_rows)},
-    {"per_km2", "1/km2", "on the map", "where truth has no ground_km2", "false alarms a km2 of visible ground",
+/* clang-format off */
+#define RATES_ROWS \
+    {"chances", "", "", "", "targets to be found: one a target, frame and band", IN_RATES(chances)}, \
+    {"found", "", "", "", "those that an answer names, whatever its class", IN_RATES(found)}, \
+    {"recognised", "", "", "", "those that an answer names with their class", IN_RATES(recognised)}, \
+    {"sequences", "", "", "", "sequences that have such a target", IN_RATES(sequences)}, \
+    {"samples", "", "", "", "effective number of sequences: 1 over the sum of squares of their shares of the chances", \
+     IN_RATES(samples)}, \
+    {"detection", "", "", "without a target to be found", "detection rate: found of chances", .in = detection_of, \
+     FIELD_OBJECT(share_rows)}, \
+    {"recognition", "", "", "without a target to be found", "recognised of chances", .in = recognition_of, \
+     FIELD_OBJECT(share_rows)}, \
+    {"frames", "", "", "", \
+     "frames times bands that were scored; of a bin: those whose largest target to be found is in it", \
+     IN_RATES(frames)}, \
+    {"frames_answered", "", "", "", "of these: with an answer, also one that found nothing", IN_RATES(frames_answered)}, \
+    {"false_alarms", "", "", "", "answers in these frames that name nothing", IN_RATES(false_alarms)}, \
+    {"deg2", "deg2", "", "", "fields of view of these frames, together", IN_RATES(deg2)}, \
+    {"km2", "km2", "on the map", "", "visible ground of these frames, together; 0: not known", IN_RATES(km2)}, \
+    {"per_frame", "", "", "without a frame", "false alarms a frame", .in = per_frame_of, FIELD_OBJECT(share_rows)}, \
+    {"per_deg2", "1/deg2", "", "without a frame", "false alarms a square degree", .in = per_deg2_of, \
+     FIELD_OBJECT(share_rows)}, \
+    {"per_km2", "1/km2", "on the map", "where truth has no ground_km2", "false alarms a km2 of visible ground", \
      .in = per_km2_of, FIELD_OBJECT(share_rows)},
-};
+/* clang-format on */
+
+static const Field rates_rows[] = {RATES_ROWS};
+static const Field bin_rows[] = {
+    {"from", "as the quantity", "", "", "first value of the bin", IN_RATES(from)},
+    {"to", "as the quantity", "", "of the last bin, where it has no end", "value behind the bin", IN_RATES(to)},
+    RATES_ROWS};
 
 static const void *the_total(const void *of) { return &((const ScoreRecogniser *)of)->total; }
 
@@ -93,7 +98,7 @@ static const void *by_foliage(const void *of) { return bins_of(of, AGAINST_FOLIA
 static const void *by_snr(const void *of) { return bins_of(of, AGAINST_SNR); }
 static const void *by_hour(const void *of) { return bins_of(of, AGAINST_HOUR); }
 
-#define BINS(find) .in = (find), .item = next_bin, FIELD_OBJECTS(rates_rows)
+#define BINS(find) .in = (find), .item = next_bin, FIELD_OBJECTS(bin_rows)
 
 static const Field against_rows[] = {
     {"range_m", "m", "", "without a target to be found", "as `total`, by range", BINS(by_range)},
@@ -239,6 +244,12 @@ static json_t *version(FieldAt *at)
     return json_string(PITVIPER_VERSION);
 }
 
+static const void *tracks_of(const void *of)
+{
+    const ScoreRecogniser *r = of;
+    return r->tracks.sequences > 0 ? &r->tracks : NULL;
+}
+
 static const Field errors_rows[] = {
     {"count", "", "", "", "found targets", IN_ERRORS(count)},
     {"mean_px", "px", "image: column, row", "", "mean of the answer's centre less that of the target's amodal box",
@@ -261,8 +272,9 @@ static const Field ages_rows[] = {
 
 static const Field point_rows[] = {
     {"score", "", "", "", "least score of the answers that count", IN_POINT(score)},
-    {"recall", "", "0 .. 1", "", "found of chances", IN_POINT(recall)},
-    {"precision", "", "0 .. 1", "", "found of found and false alarms", IN_POINT(precision)},
+    {"recall", "", "0 .. 1", "without a target to be found", "found of chances", IN_POINT(recall)},
+    {"precision", "", "0 .. 1", "where all answers are neither right nor wrong", "found of found and false alarms",
+     IN_POINT(precision)},
     {"false_per_frame", "", "", "", "false alarms a frame", IN_POINT(false_per_frame)},
 };
 
@@ -297,6 +309,8 @@ static const Field recogniser_rows[] = {
      FIELD_OBJECT(confusion_rows)},
     {"errors", "", "", "when nothing was found", "centroid and range", .in = errors_of, FIELD_OBJECT(errors_rows)},
     {"ages", "", "", "when no answer has latency_ms", "age of answers", .in = ages_of, FIELD_OBJECT(ages_rows)},
+    {"tracks", "", "", "when no answer has a track", "how the answers' track numbers follow targets", .in = tracks_of,
+     .type = "object", .rows = &score_track_fields},
     {"curve", "", "falling score", "", "precision and recall down to a score, at most 101 points", .item = next_point,
      FIELD_OBJECTS(point_rows)},
 };

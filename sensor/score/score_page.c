@@ -10,11 +10,11 @@ static const char rules[] =
     "p{margin:.4rem 0}.scroll{overflow-x:auto}.dim,small{opacity:.7}\n"
     ".keys{display:flex;flex-wrap:wrap;gap:.2rem 1.4rem;margin:.4rem 0 .8rem}.key{white-space:nowrap}\n"
     ".key svg{vertical-align:middle;margin-right:.4rem}\n"
-    ".big td,.big th{padding:.45rem 1.3rem .45rem 0;border:0}.big th{font-weight:400;font-size:.85rem;opacity:.8}\n"
-    ".big td{font-size:1.45rem;font-weight:600;line-height:1.25;border-top:1px solid var(--line)}\n"
+    ".big td,.big th{padding:.45rem clamp(.6rem,1.8vw,1.6rem) .45rem 0;border:0}.big th{font-weight:400;font-size:.85rem;opacity:.8}\n"
+    ".big td{font-size:clamp(1.15rem,2.6vw,1.5rem);font-weight:600;line-height:1.25;border-top:1px solid var(--line)}\n"
     ".big td small{display:block;font-size:.8rem;font-weight:400;white-space:nowrap}\n"
-    ".big td.who{font-size:1rem;max-width:14rem;overflow-wrap:anywhere}.who .key{white-space:normal}\n"
-    "table.figures td,table.figures th{padding:.2rem .8rem}table.figures th{vertical-align:bottom}\n"
+    ".big td.who{font-size:1rem;max-width:14rem;overflow-wrap:break-word}.who .key{white-space:normal}\n"
+    "table.figures td,table.figures th{padding:.2rem .6rem}table.figures th{vertical-align:bottom}\n"
     ".figures th.rec{text-align:center;border-left:1px solid var(--line)}.figures .first{border-left:1px solid var(--line)}\n"
     ".plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,26rem),1fr));gap:1rem}\n"
     ".plots figure{margin:0}.plots svg{display:block;width:100%;height:auto;border:1px solid var(--line);border-radius:6px}\n"
@@ -23,7 +23,7 @@ static const char rules[] =
     ".heat td{text-align:right;min-width:3.4rem}.heat td.none{opacity:.35}.heat .end{border-left:2px solid var(--line)}\n"
     ".heat th{font-weight:400}.heat thead th{text-align:right;vertical-align:bottom}.heat tbody th{text-align:left}\n"
     ".heat .right{outline:2px solid var(--line);outline-offset:-2px}.heat small{display:block;line-height:1.1}\n"
-    ".crop{position:relative;display:inline-block;line-height:0}.crop img{width:112px;height:112px;object-fit:fill}\n"
+    ".crop{position:relative;display:inline-block;line-height:0}.crop img{width:88px;height:88px;object-fit:fill}\n"
     ".crop i{position:absolute;outline:1.5px solid #ff3b30}.cases td{vertical-align:middle}\n"
     "dl{display:grid;grid-template-columns:max-content 1fr;gap:.2rem 1.2rem}dd{margin:0}\n";
 
@@ -61,10 +61,11 @@ __attribute__((format(printf, 2, 0))) void page_cell(FILE *page, const char *for
 
 /* ---- the few numbers ------------------------------------------------------------------------------ */
 
-/* Three figures, but not fewer than two behind the point of what is below 10. */
+/* About three figures, and so many behind the point that a share and its bounds have as many. */
 static const char *figures(char out[32], double value)
 {
-    if (value != 0 && fabs(value) < 0.1) snprintf(out, 32, "%.2g", value);
+    if (value != 0 && fabs(value) < 0.0095) snprintf(out, 32, "%.2g", value);
+    else if (value != 0 && fabs(value) < 0.0995) snprintf(out, 32, "%.3f", value);
     else snprintf(out, 32, "%.*f", fabs(value) < 10 ? 2 : fabs(value) < 100 ? 1 : 0, value);
     return out;
 }
@@ -107,9 +108,9 @@ static void put_numbers(FILE *page, const ScoreReport *report)
         put_share(page, &r->total.recognition);
         put_share(page, &r->total.per_frame);
         const bool coco = isfinite(r->map);
-        put_big(page, coco ? r->map : r->ap_centre, coco ? "%.2f at IoU 0.5" : "by centres", r->map50);
+        put_big(page, coco ? r->map : r->ap_centre, coco ? "AP50 %.2f" : "by centres", r->map50);
         put_big(page, tracks_idf1(&r->tracks), "%llu switches", (unsigned long long)r->tracks.switches);
-        put_big(page, r->ages.count > 0 ? r->ages.median_ms : (double)NAN, "95 %% below %.0f", r->ages.p95_ms);
+        put_big(page, r->ages.count > 0 ? r->ages.median_ms : (double)NAN, "p95 %.0f", r->ages.p95_ms);
         fputs("</tr>\n", page);
     }
     fputs("</tbody></table></div>\n<p class=\"dim\">Small figures below rates: bounds of 95 %, with a sequence as one "

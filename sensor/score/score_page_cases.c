@@ -60,14 +60,20 @@ static void put_box(FILE *page, const double box_px[4], const Crop *crop)
             top * to_percent, (right - left) * to_percent, (bottom - top) * to_percent);
 }
 
-/* False: there is no such picture. */
-static bool put_crop(FILE *page, const ScoreReport *report, const WorstCase *c, const char *scratch)
+/* False: there is no such picture. scratch: empty from when none can be read. */
+static bool put_crop(FILE *page, const ScoreReport *report, const WorstCase *c, char *scratch)
 {
     char      path[2 * path_size], below[path_size];
     ImageInfo info;
     frame_path(below, c);
     snprintf(path, sizeof path, "%s/%s", report->out, below);
-    if (access(path, R_OK) != 0 || image_info(&info, path) != STATUS_OK) return false;
+    if (access(path, R_OK) != 0) return false;
+    if (image_read_prepare() != STATUS_OK || image_file_prepare() != STATUS_OK) { /* said once */
+        unlink(scratch);
+        scratch[0] = 0;
+        return false;
+    }
+    if (image_info(&info, path) != STATUS_OK) return false;
     const size_t octets = (size_t)info.channels * (size_t)(info.bits / 8), row = (size_t)info.width * octets;
     if ((info.channels != 1 && info.channels != 3) || (info.bits != 8 && info.bits != 16) ||
         row * (size_t)info.height > picture_most)
@@ -91,14 +97,25 @@ static bool put_crop(FILE *page, const ScoreReport *report, const WorstCase *c, 
 
 /* ---- tables --------------------------------------------------------------------------------------- */
 
-static void put_case(FILE *page, const ScoreReport *report, const WorstCase *c, bool miss, const char *scratch)
+static bool any_sequence(const WorstCases *cases)
+{
+    bool any = false;
+    for (int i = 0; i < cases->count; i++) any = any || cases->one[i].sequence[0];
+    return any;
+}
+
+static void put_case(FILE *page, const ScoreReport *report, const WorstCase *c, bool miss, bool sequences,
+                     char *scratch)
 {
     fputs("<tr><td>", page);
     if (!scratch[0] || !has_box(c) || !put_crop(page, report, c, scratch))
         fputs("<span class=\"dim\">&ndash;</span>", page);
-    fputs("</td><td>", page);
-    page_text(page, c->sequence[0] ? c->sequence : "");
     fputs("</td>", page);
+    if (sequences) {
+        fputs("<td>", page);
+        page_text(page, c->sequence);
+        fputs("</td>", page);
+    }
     page_cell(page, "%.0f", c->frame);
     page_cell(page, "%.2f", c->t_s);
     fprintf(page, "<td>%s</td><td>", band_name(c->band));
@@ -121,7 +138,7 @@ static void put_case(FILE *page, const ScoreReport *report, const WorstCase *c, 
     fputs("</tr>\n", page);
 }
 
-static void put_cases(FILE *page, const ScoreReport *report, bool misses, const char *scratch)
+static void put_cases(FILE *page, const ScoreReport *report, bool misses, char *scratch)
 {
     const int each = report->recognisers > 1 ? worst_most / 2 : worst_most;
     for (int k = 0; k < report->recognisers; k++) {
@@ -136,9 +153,10 @@ static void put_cases(FILE *page, const ScoreReport *report, bool misses, const 
             fputs("<p class=\"dim\">None.</p>\n", page);
             continue;
         }
-        fputs("<div class=\"scroll\"><table class=\"figures cases\"><thead><tr><th></th><th>sequence</th><th "
-              "class=\"n\">frame</th><th class=\"n\">time, s</th><th>band</th>",
-              page);
+        const bool sequences = any_sequence(cases);
+        fputs("<div class=\"scroll\"><table class=\"figures cases\"><thead><tr><th></th>", page);
+        if (sequences) fputs("<th>sequence</th>", page);
+        fputs("<th class=\"n\">frame</th><th class=\"n\">time, s</th><th>band</th>", page);
         fputs(misses ? "<th>target</th>" : "<th>answered as</th>", page);
         fputs("<th class=\"n\">box, px</th>", page);
         fputs(misses ? "<th class=\"n\">pixels</th><th class=\"n\">range, m</th><th class=\"n\">visible</th><th "
@@ -146,7 +164,8 @@ static void put_cases(FILE *page, const ScoreReport *report, bool misses, const 
                      : "<th class=\"n\">score</th>",
               page);
         fputs("</tr></thead><tbody>\n", page);
-        for (int i = 0; i < cases->count && i < each; i++) put_case(page, report, &cases->one[i], misses, scratch);
+        for (int i = 0; i < cases->count && i < each; i++)
+            put_case(page, report, &cases->one[i], misses, sequences, scratch);
         fputs("</tbody></table></div>\n", page);
     }
 }

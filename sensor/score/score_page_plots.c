@@ -100,9 +100,9 @@ static void label_slots(FILE *page, const Slots *s, int which, const SvgAxis *x)
             if (i < s->count) svg_text(page, SVG_INK, SVG_MIDDLE, middle, box.bottom + 17, "%s", name);
             continue;
         }
-        svg_number(text, edge / quantity[which].unit);
-        if (isfinite(edge)) svg_text(page, SVG_INK, SVG_MIDDLE, at, box.bottom + 17, "%s", text);
-        else svg_text(page, SVG_INK, SVG_RIGHT, at, box.bottom + 17, "and more");
+        if (isfinite(edge)) snprintf(text, sizeof text, "%.6g", edge / quantity[which].unit);
+        else snprintf(text, sizeof text, "\xe2\x88\x9e");
+        svg_text(page, SVG_INK, SVG_MIDDLE, at, box.bottom + 17, "%s", text);
     }
 }
 
@@ -112,19 +112,21 @@ static bool has_rate(const ScoreRecogniser *r, int which, const Slots *s, int sl
     return rates && isfinite(rates->detection.value);
 }
 
-/* One recogniser: intervals as areas, as wide as their bins; shares as points, joined where bins touch. */
+/* One recogniser: intervals as areas, of a single one as wide as its bins; shares as points, joined where bins touch.
+ */
 static void put_shares(FILE *page, const ScoreReport *report, int k, int which, const Slots *s, const SvgAxis *x,
                        const SvgAxis *y)
 {
     const ScoreRecogniser *r = &report->recogniser[k];
     const double           aside = 0.16 * (k - 0.5 * (report->recognisers - 1)); /* points of several do not cover */
-    const double           half = which == AGAINST_COUNT ? 0.05 : 0.5;
+    const bool             wide = report->recognisers == 1 && which != AGAINST_COUNT;
+    const double           half = wide ? 0.5 : 0.06;
     for (int i = 0; i < s->count; i++) {
         if (!has_rate(r, which, s, i)) continue;
         const ScoreShare *share = &rates_in(r, which, &s->slot[i])->detection;
-        const double      middle = i + 0.5 + (which == AGAINST_COUNT ? aside : 0);
+        const double      middle = i + 0.5 + aside;
         const double      left = svg_at(x, middle - half), right = svg_at(x, middle + half);
-        svg_area_begin(page, page_colour[k], report->recognisers == 1 ? 0.2 : 0.13);
+        svg_area_begin(page, page_colour[k], wide ? 0.2 : 0.28);
         svg_curve_point(page, left, svg_at(y, share->low));
         svg_curve_point(page, left, svg_at(y, share->high));
         svg_curve_point(page, right, svg_at(y, share->high));

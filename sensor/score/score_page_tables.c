@@ -18,7 +18,7 @@ static void put_precisions(FILE *page, const ScoreReport *report)
     if (report->recognisers > 1) {
         fputs("<tr><th></th><th></th>", page);
         for (int k = 0; k < report->recognisers; k++) {
-            fputs("<th class=\"rec\" colspan=\"5\">", page);
+            fputs("<th class=\"rec\" colspan=\"4\">", page);
             page_key(page, report, k);
             fputs("</th>", page);
         }
@@ -27,7 +27,7 @@ static void put_precisions(FILE *page, const ScoreReport *report)
     fputs("<tr><th>class</th><th class=\"n\">targets</th>", page);
     for (int k = 0; k < report->recognisers; k++)
         fputs("<th class=\"n first\">answers</th><th class=\"n\">AP</th><th class=\"n\">AP50</th><th "
-              "class=\"n\">AP75</th><th class=\"n\">by centres</th>",
+              "class=\"n\">by centres</th>",
               page);
     fputs("</tr></thead><tbody>\n", page);
     for (int c = 1; c <= target_class_count(); c++) {
@@ -44,7 +44,6 @@ static void put_precisions(FILE *page, const ScoreReport *report)
             page_cell(page, "%.0f", p ? (double)p->answers : (double)NAN);
             page_cell(page, "%.3f", p ? p->ap : (double)NAN);
             page_cell(page, "%.3f", p ? p->ap50 : (double)NAN);
-            page_cell(page, "%.3f", p ? p->ap75 : (double)NAN);
             page_cell(page, "%.3f", p ? p->ap_centre : (double)NAN);
         }
         fputs("</tr>\n", page);
@@ -117,8 +116,8 @@ static void put_confusion(FILE *page, const ScoreReport *report, int k)
 
 void page_classes(FILE *page, const ScoreReport *report)
 {
-    fputs("<h2>Classes</h2>\n<p class=\"dim\">Average precision as COCO has it, mean of IoU 0.50 to 0.95, at 0.50 and "
-          "0.75; by centres: with the rule of the rates.</p>\n",
+    fputs("<h2>Classes</h2>\n<p class=\"dim\">Average precision as COCO has it, mean of IoU 0.50 to 0.95, and at 0.50; "
+          "by centres: with the rule of the rates.</p>\n",
           page);
     put_precisions(page, report);
     fputs("<h3>What targets were answered as</h3>\n<p class=\"dim\">Counts, and shares of their row. Green: the right "
@@ -212,7 +211,7 @@ void page_tracks(FILE *page, const ScoreReport *report)
         {"switches", "%.0f", switches},
         {"fragmentations", "%.0f", fragmentations},
         {"tracks", NULL, NULL},
-        {"tracks", "%.0f", track_count},
+        {"track numbers", "%.0f", track_count},
         {"of these never on a target", "%.0f", tracks_false},
         {"purity of the others, mean", "%.3f", purity},
         {"their answers, mean", "%.1f", track_length},
@@ -230,7 +229,7 @@ void page_tracks(FILE *page, const ScoreReport *report)
         {"for frames, mean", "%.1f", coast_length},
         {"for frames, most", "%.0f", coast_most},
         {"share of these frames on the target", "%.3f", coast_held},
-        {"overlap with the target, mean IoU", "%.3f", coast_similarity},
+        {"overlap with the target, mean similarity", "%.3f", coast_similarity},
         {"times that the target is found again", "%.0f", returns},
         {"by the same track", "%.0f", resumed},
     };

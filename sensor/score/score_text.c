@@ -123,6 +123,22 @@ static void print_errors(FILE *to, const ScoreRecogniser *r)
                 figure(a, age->median_ms), figure(b, age->p95_ms), figure(c, age->max_ms), age->late);
 }
 
+static void print_tracks(FILE *to, const TracksScore *t)
+{
+    char idf1[24], purity[24], delay[24];
+    if (t->sequences == 0) return;
+    fprintf(
+        to,
+        "  tracks: IDF1 %s, purity %s, %llu switches, %llu fragmentations; %llu of %llu targets found, after %s s\n",
+        figure(idf1, tracks_idf1(t)), figure(purity, tracks_purity(t)), (unsigned long long)t->switches,
+        (unsigned long long)t->fragmentations, (unsigned long long)t->truths_found, (unsigned long long)t->truths,
+        figure(delay, tracks_delay_s(t)));
+    if (t->hidings)
+        fprintf(to, "  hidden targets: %llu times, coasted %llu times, again by the same track %llu of %llu times\n",
+                (unsigned long long)t->hidings, (unsigned long long)t->coasts, (unsigned long long)t->resumed,
+                (unsigned long long)t->returns);
+}
+
 static void print_recogniser(FILE *to, const ScoreRecogniser *r, bool full)
 {
     char ap[24], ap50[24], centre[24];
@@ -137,6 +153,7 @@ static void print_recogniser(FILE *to, const ScoreRecogniser *r, bool full)
     if (full) print_classes(to, r);
     if (full) print_confusion(to, r);
     print_errors(to, r);
+    print_tracks(to, &r->tracks);
 }
 
 /* ---- several, side by side --------------------------------------------------------------------------- */

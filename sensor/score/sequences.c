@@ -39,7 +39,8 @@ static Status add(Sequences *s, const char *name)
 /* One line of the manifest. */
 static Status add_variant(Sequences *s, const char *folder, const JsonStream *stream)
 {
-    json_t     *line = json_loadb(stream->text, stream->length, 0, NULL);
+    json_t *line;
+    if (json_member_load(&line, stream->text, stream->length) == STATUS_NO_MEMORY) return STATUS_NO_MEMORY;
     const char *name = json_string_value(json_object_get(line, "folder"));
     const char *how = json_string_value(json_object_get(line, "status"));
     Status      status = STATUS_OK;

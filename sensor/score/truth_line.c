@@ -131,12 +131,15 @@ static Status read_sensor(TruthFrame *out, const json_t *sensor, const JsonStrea
     out->deg2 = across * up;
     out->km2 = json_member_number(sensor, "ground_km2");
     if (!(out->km2 >= 0)) out->km2 = NAN;
+    if (!json_is_array(bands) || json_array_size(bands) == 0) return wrong(s, "no `bands` of the sensor");
     out->bands = 0;
     for (size_t i = 0; i < json_array_size(bands); i++) {
         const char *name = json_string_value(json_array_get(bands, i));
         for (int b = 0; name && b < BAND_COUNT; b++) out->bands |= strcmp(name, band_name((Band)b)) == 0 ? 1u << b : 0;
     }
-    return out->bands ? STATUS_OK : wrong(s, "no `bands` of the sensor");
+    if (out->bands) return STATUS_OK;
+    log_error("score: %s:%ld: its bands are further channels; name them with --bands", s->path, s->line);
+    return STATUS_BAD_VALUE;
 }
 
 static Status read_frame(TruthFrame *out, const json_t *line, const JsonStream *s)
@@ -157,7 +160,7 @@ static Status read_frame(TruthFrame *out, const json_t *line, const JsonStream *
 }
 
 /* The line's JSON, of what is read here alone. */
-static json_t *load(TruthFrame *out, const JsonStream *s)
+static Status load(json_t **line, TruthFrame *out, const JsonStream *s)
 {
     static const char *const wanted[] = {"frame",
                                          "time_s",
@@ -194,18 +197,20 @@ static json_t *load(TruthFrame *out, const JsonStream *s)
     for (int b = 0; b < BAND_COUNT; b++) names[wanted_count + b] = band_name((Band)b);
     if (s->length > out->text_room) {
         char *grown = realloc(out->text, 2 * s->length);
-        if (!grown) return NULL;
+        if (!grown) return STATUS_NO_MEMORY;
         out->text = grown;
         out->text_room = 2 * s->length;
     }
     const size_t length = json_pick(out->text, s->text, s->length, names, wanted_count + BAND_COUNT);
-    return length > 0 ? json_loadb(out->text, length, 0, NULL) : NULL;
+    return json_member_load(line, out->text, length);
 }
 
 Status truth_line_read(TruthFrame *out, const JsonStream *s)
 {
-    json_t *line = load(out, s);
-    Status  status = json_is_object(line) ? read_frame(out, line, s) : wrong(s, "a line that is no JSON object");
+    json_t *line = NULL;
+    Status  status = load(&line, out, s);
+    if (status == STATUS_OK && json_is_object(line)) status = read_frame(out, line, s);
+    else if (status != STATUS_NO_MEMORY) status = wrong(s, "a line that is no JSON object");
     json_decref(line);
     return status;
 }

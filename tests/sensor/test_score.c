@@ -210,6 +210,33 @@ static void test_rules(void **state)
     }
 }
 
+/* Of many scores 101 points are kept, evenly, the highest and the lowest among them. */
+static void test_curve(void **state)
+{
+    (void)state;
+    ScoreFolder f;
+    ScoreReport report;
+    score_folder_open(&f);
+    for (int frame = 0; frame < 1000; frame++) {
+        score_frame(&f, frame, lwir);
+        score_target(&f, "", 1, "tank", large_box, 600);
+        score_frame_end(&f);
+        /* right where even; the score falls with the frame's number */
+        fprintf(f.answers, "{\"frame\":%d,\"class\":\"tank\",\"box_px\":[%d,200,%d,220],\"score\":%.3f}\n", frame,
+                frame % 2 ? 10 : 300, frame % 2 ? 50 : 340, (1000 - frame) / 1000.);
+    }
+    const ScoreRecogniser *r = scored(&report, &f, NULL);
+    CHECK(r->points == score_curve_max && r->curve[0].score == 1 && r->curve[100].score == 0.001);
+    for (int i = 0; i < r->points; i++) {
+        const double answers = round(1000 * (1 - r->curve[i].score)) + 1, right = ceil(answers / 2);
+        CHECK_NEAR(r->curve[i].recall, right / 1000, 1e-12);
+        CHECK_NEAR(r->curve[i].precision, right / answers, 1e-12);
+        CHECK_NEAR(r->curve[i].false_per_frame, (answers - right) / 1000, 1e-12);
+        if (i > 0) CHECK_NEAR(r->curve[i - 1].score - r->curve[i].score, 0.01, 0.00101);
+    }
+    score_report_free(&report);
+}
+
 /* A line of sight: the camera looks north along ecef z from 0 N 0 E, x to the east, so that azimuth turns right and
  * elevation up; focal length 320 / tan 2 degrees. */
 static void test_lines_of_sight(void **state)
@@ -236,9 +263,10 @@ static void test_lines_of_sight(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rates), cmocka_unit_test(test_average_precision),
-        cmocka_unit_test(test_edges), cmocka_unit_test(test_ignored),
-        cmocka_unit_test(test_rules), cmocka_unit_test(test_lines_of_sight),
+        cmocka_unit_test(test_rates),          cmocka_unit_test(test_average_precision),
+        cmocka_unit_test(test_edges),          cmocka_unit_test(test_ignored),
+        cmocka_unit_test(test_rules),          cmocka_unit_test(test_curve),
+        cmocka_unit_test(test_lines_of_sight),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

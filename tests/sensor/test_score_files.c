@@ -216,7 +216,10 @@ static void test_permuted(void **state)
 static void test_bad_truth(void **state)
 {
     (void)state;
-    static const char *const lines[] = {"{\"frame\":0}\n", "[]\n", "{\"frame\":\"0\"\n\n", "0\n"};
+    static const char *const lines[] = {
+        "{\"frame\":0}\n", "[]\n", "{\"frame\":\"0\"\n\n", "0\n",
+        "{\"frame\":6,\"time_s\":6,\"sensors\":[{\"bands\":[\"swir\"],\"width_px\":9,\"height_px\":9,"
+        "\"hfov_deg\":4,\"vfov_deg\":3}],\"targets\":[]}\n"};
     for (size_t i = 0; i <= sizeof lines / sizeof *lines; i++) {
         ScoreFolder f;
         ScoreReport report;

@@ -54,7 +54,7 @@ class Maker:
                         if found:
                             said = r.choice([kind, kind, "truck" if kind == "tank" else "tank", "unknown", "lorry"])
                             dx, dy = 1.0, -0.5
-                            answers.append(line | {"class": said, "range_m": 1500 + RANGE_OFF_M,
+                            answers.append(line | {"class": said, "range_m": 1500 + RANGE_OFF_M, "track": k + 1,
                                                    "box_px": [x + dx, y + dy, x + w + dx, y + h + dy]})
                         if hidden or tiny:
                             self.count("ignored", found)

@@ -2,8 +2,10 @@
 
     score_judge.py counts SCORE EXPECTED      the counts that answers were made for (score_folder.py), exactly
     score_judge.py coco-make FOLDER SEED      truth.jsonl, coco.json and results.json of random boxes
-    score_judge.py coco SCORE COCO RESULTS    average precision as pycocotools has it, to 1e-9"""
-import contextlib, io, json, math, random, sys
+    score_judge.py coco-sweep FOLDER SEED     the same of two variants: manifest.jsonl, one coco.json of both, one results.json
+    score_judge.py coco SCORE COCO RESULTS    average precision as pycocotools has it, to 1e-9
+    score_judge.py coco-of FOLDER             made.json and results.json of truth.jsonl and answers.jsonl, where there is no coco.json"""
+import contextlib, io, json, math, os, random, sys
 
 wrong = []
 def same(what, got, want, within=0.0):
@@ -76,6 +78,45 @@ def coco_make(folder, seed):
                "info": {}}, open(f"{folder}/coco.json", "w"))
     json.dump(results, open(f"{folder}/results.json", "w"))
 
+def coco_sweep(folder, seed):
+    images, annotations, results = [], [], []
+    with open(f"{folder}/manifest.jsonl", "w") as manifest:
+        for v in ("va", "vb"):
+            os.makedirs(f"{folder}/{v}")
+            coco_make(f"{folder}/{v}", seed + len(images))
+            one, new = json.load(open(f"{folder}/{v}/coco.json")), {}
+            for i in one["images"]:
+                new[i["id"]] = len(images) + 1
+                images.append(i | {"id": len(images) + 1, "variant": v})
+            for a in one["annotations"]: annotations.append(a | {"id": len(annotations) + 1, "image_id": new[a["image_id"]]})
+            for a in json.load(open(f"{folder}/{v}/results.json")): results.append(a | {"image_id": new[a["image_id"]]})
+            manifest.write(json.dumps({"folder": v, "status": "kept"}) + "\n")
+    json.dump({"images": images, "annotations": annotations, "categories": one["categories"], "info": {}}, open(f"{folder}/coco.json", "w"))
+    json.dump(results, open(f"{folder}/results.json", "w"))
+
+def coco_of(folder):
+    ids, bands = {"tank": 1, "truck": 9}, ("optical", "mwir", "lwir", "radar")
+    images, annotations, results = [], [], []
+    for line in open(f"{folder}/truth.jsonl"):
+        frame = json.loads(line)
+        for band in frame["sensors"][0]["bands"]:
+            image = 4 * frame["frame"] + bands.index(band) + 1
+            images.append({"id": image, "band": band})
+            for t in frame["targets"]:
+                if "box_px" not in t: continue
+                x0, y0, x1, y1 = t["box_px"]
+                annotations.append({"id": len(annotations) + 1, "image_id": image, "category_id": ids[t["class"]], "bbox": [x0, y0, x1 - x0, y1 - y0],
+                                    "area": t["pixels"], "iscrowd": int(t["pixels"] < 5)})
+    for a in map(json.loads, open(f"{folder}/answers.jsonl")):
+        if a.get("class") not in ids: continue
+        x0, y0, x1, y1 = a["box_px"]
+        results.append({"image_id": 4 * a["frame"] + bands.index(a["band"]) + 1, "category_id": ids[a["class"]], "score": a["score"],
+                        "bbox": [x0, y0, x1 - x0, y1 - y0]})
+    results.sort(key=lambda a: (a["image_id"], -a["score"], a["bbox"], a["category_id"]))
+    json.dump({"images": images, "annotations": annotations, "categories": [{"id": i, "name": n} for n, i in ids.items()], "info": {}},
+              open(f"{folder}/made.json", "w"))
+    json.dump(results, open(f"{folder}/results.json", "w"))
+
 def coco(score, truth, results):
     from pycocotools.coco import COCO
     from pycocotools.cocoeval import COCOeval
@@ -106,6 +147,7 @@ def coco(score, truth, results):
     print(compared, "average precisions compared")
     if compared < 6: wrong.append("too few were compared")
 
-{"counts": counts, "coco-make": lambda folder, seed, *_: coco_make(folder, int(seed)), "coco": coco}[sys.argv[1]](*sys.argv[2:])
+{"counts": counts, "coco-make": lambda folder, seed, *_: coco_make(folder, int(seed)), "coco": coco, "coco-of": coco_of,
+ "coco-sweep": lambda folder, seed: coco_sweep(folder, int(seed))}[sys.argv[1]](*sys.argv[2:])
 for line in wrong[:20]: print("FAILED:", line)
 sys.exit(bool(wrong))

@@ -81,6 +81,9 @@ check "other products" [ $code = 0 ] || cat "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
 run replay "$tmp/two.pcap" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml" \
     --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000
+python3 tests/system/score_folder.py "$tmp/score" --frames 30
+run score "$tmp/score" --max-age 20 --min-visible 0.5
+check "a score" [ $code = 0 ]
 mkdir "$tmp/case"
 cat >"$tmp/case/case.yaml" <<Y
 purpose: a record
@@ -104,7 +107,7 @@ wait "${senders[@]}" 2>/dev/null
 
 variant=$(find "$tmp/sweep" -name variant.json -printf '%h\n')
 python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$variant" --run "$tmp/truth" \
-    --run "$tmp/sensor" --sweep "$tmp/sweep" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
+    --run "$tmp/sensor" --sweep "$tmp/sweep" --score "$tmp/score" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
     --capture "$tmp/truth.pcapng" --live "$tmp/truth" --capture "$tmp/sensor.pcapng" --streams "${#stream[@]}" || fail "products and their reference"
 
 # its twins: a field without a row, a row without a field, a type, an absence, lines that do not run

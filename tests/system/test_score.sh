@@ -20,6 +20,9 @@ shuf --random-source=<(yes) "$tmp/one/answers.jsonl" >"$tmp/shuffled.jsonl" && c
 run score "$tmp/one" --overwrite
 check "answers in another order: the same to the octet" cmp "$tmp/one/score.json" "$tmp/first.json"
 
+python3 tests/system/score_judge.py coco-of "$tmp/one"
+judge "average precision without coco.json" coco "$tmp/one/score.json" "$tmp/one/made.json" "$tmp/one/results.json"
+
 python3 tests/system/score_folder.py "$tmp/sweep" --frames 12 --sequences 4 --seed 5
 run score "$tmp/sweep"
 check "sweep" [ $code = 0 ] && check "sweep: variants" grep -q '48 frames of 4 variants' "$tmp/stdout"
@@ -44,6 +47,14 @@ for seed in 1 2; do
     sed 's/"ap": 0\.1/"ap": 0.2/; s/"ap75": 0\./"ap75": 0.9/' "$tmp/coco$seed/score.json" >"$tmp/spoilt.json"
     check "average precision, spoilt" eval '! python3 tests/system/score_judge.py coco "$tmp/spoilt.json" "$tmp/coco$seed/coco.json" "$tmp/coco$seed/results.json" >"$tmp/said"'
 done
+
+mkdir "$tmp/both"
+python3 tests/system/score_judge.py coco-sweep "$tmp/both" 11
+run score "$tmp/both" "$tmp/both/results.json"
+check "COCO results of a sweep" [ $code = 0 ] && check "COCO results of a sweep: frames" grep -q '80 frames of 2 variants' "$tmp/stdout"
+judge "average precision of a sweep" coco "$tmp/both/score.json" "$tmp/both/coco.json" "$tmp/both/results.json"
+run score "$tmp/both/va" "$tmp/both/results.json"
+check "COCO results of images that are elsewhere" [ $code = 1 ] && complained 'image_id'
 
 # ---- side by side
 run score "$tmp/one" "$tmp/one/answers.jsonl" "$tmp/shuffled.jsonl" "$tmp/one/answers.jsonl" --out "$tmp/side" --score 0.5

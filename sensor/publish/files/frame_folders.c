@@ -172,7 +172,8 @@ static const char *const marks[] = {"run.json", "truth.jsonl"};
 
 void frame_files_clear(const char *out)
 {
-    static const char *const beside[] = {"pairs", "pairs.jsonl", "coco.json", "answers.jsonl", "score.json"};
+    static const char *const beside[] = {"pairs",         "pairs.jsonl", "coco.json",
+                                         "answers.jsonl", "score.json",  "score.html"};
     char                     path[path_size];
     bool                     earlier = !too_long(out) && frame_files_earlier(path, out);
     if (too_long(out)) return;
