@@ -130,7 +130,8 @@ def shape():
     for name, rows in recognise_shape.CLASSES.items():
         score, word = recognise_shape.judged([mean for mean, _ in rows])
         check(f'shape: the middle of {name}', (word == name and score > 0.5) if name != 'clutter' else score < 0.1)
-    check('shape: a block is found', any(near(d.box, BLOCK, 1) and d.score > 0.9 for d in found(Shape(), scene(6, 40), scene(7, 40))))
+    seen = found(Shape(), scene(6, 40), scene(7, 40))
+    check('shape: a block is found', any(near(d.box, BLOCK, 1) and d.score > 0.9 for d in seen))
     tank, clutter = ([mean for mean, _ in recognise_shape.CLASSES[name]] for name in ('tank', 'clutter'))
     half = [(a + b) / 2 for a, b in zip(tank, clutter)]
     one, both = (recognise_shape.judged(half[:5] + second[5:])[0] for second in (clutter, tank))
