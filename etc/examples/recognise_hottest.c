@@ -4,9 +4,9 @@
  *     pitviper run --memory seeker --set publish.detections_port=3456 ...      in one terminal
  *     ./recognise_hottest seeker [BAND]                                        in another
  *
- * Without BAND the first of lwir, mwir and optical that the ring has; of colour the mean. What is answered is printed, a
- * line per frame: its number, box (left, top, right, bottom, px), score, track. It waits for the node to start (60 s) and
- * ends with it. */
+ * Without BAND the first of lwir, mwir and optical that the ring has; of colour the mean. What is answered is printed,
+ * a line per frame: its number, box (left, top, right, bottom, px), score, track. It waits for the node to start (60 s)
+ * and ends with it. */
 #include <pitviper_memory.h>
 
 #include <arpa/inet.h>
@@ -20,7 +20,7 @@ enum {
     side_px = 2 * reach_px + 1,
     patience = 5, /* frames without a detection after which a track ends */
 };
-static const double level = 0.1; /* of the way from their median to it: what is above belongs to the box */
+static const double level = 0.1;  /* of the way from their median to it: what is above belongs to the box */
 static const float  gate = 0.08f; /* farthest step of a track from one frame to the next, over the width of the image */
 
 typedef struct Plane {
@@ -111,7 +111,8 @@ static Found hottest(const Plane *p)
     memcpy(sorted, near, (size_t)count * sizeof *near);
     const float middle = median(sorted, count), peak = p->median[at];
     if (!(peak > middle)) return (Found){0}; /* an image of one value */
-    grow(&found, near, right - left, bottom - top, column - left, row - top, (float)(middle + level * ((double)peak - middle)));
+    grow(&found, near, right - left, bottom - top, column - left, row - top,
+         (float)(middle + level * ((double)peak - middle)));
     for (int i = 0; i < count; i++) sorted[i] = fabsf(near[i] - middle);
     found.score = (peak - middle) / (peak - middle + 10 * median(sorted, count));
     found.left += left, found.right += left, found.top += top, found.bottom += top;
@@ -224,12 +225,14 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: recognise_hottest NAME [BAND]\n");
         return 1;
     }
-    for (int tries = 0; tries < 6000 && (result == PITVIPER_MEMORY_ABSENT || result == PITVIPER_MEMORY_ENDED); tries++) {
+    for (int tries = 0; tries < 6000 && (result == PITVIPER_MEMORY_ABSENT || result == PITVIPER_MEMORY_ENDED);
+         tries++) {
         result = pitviper_memory_open(&m, argv[1]);
         if (result < 0) usleep(10000);
     }
     if (result < 0) {
-        fprintf(stderr, "recognise_hottest: %s/%s: %s\n", PITVIPER_MEMORY_FOLDER, argv[1], pitviper_memory_error(result));
+        fprintf(stderr, "recognise_hottest: %s/%s: %s\n", PITVIPER_MEMORY_FOLDER, argv[1],
+                pitviper_memory_error(result));
         return 1;
     }
     const int band = band_of(&m, argc > 2 ? argv[2] : NULL);

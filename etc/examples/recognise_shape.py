@@ -63,18 +63,17 @@ def likelihoods(values):
 def judged(values):
     """Score and class of a candidate."""
     logs = likelihoods(values)
-    most = max(logs.values())
-    share = {name: math.exp(v - most) for name, v in logs.items()}
-    score = 1 - share['clutter'] / sum(share.values())
-    first, second = sorted((v for k, v in share.items() if k != 'clutter'), reverse=True)[:2]
-    name = max((v, k) for k, v in share.items() if k != 'clutter')[1]
-    return score, name if first > SURE * second else 'unknown'
+    clutter = logs.pop('clutter')
+    (first, name), (second, _) = sorted(((v, k) for k, v in logs.items()), reverse=True)[:2]
+    odds = first + math.log1p(math.exp(second - first)) - clutter  # of any class against clutter, natural logarithm
+    score = 0.5 + 0.5 * math.tanh(odds / len(values) / 2)
+    return score, name if first - second > math.log(SURE) else 'unknown'
 
 
 class Shape:
     bands_wanted = 2
 
-    def __init__(self, least_score=0.02):
+    def __init__(self, least_score=0.36):
         self.least_score, self.candidates = least_score, Contrast(threshold=4, most=20)
 
     def measured(self, look):
