@@ -21,7 +21,7 @@ typedef struct Image {
 static void match_image(Image *image, int level)
 {
     const double least = fmin(least_iou(level), 1 - 1e-10);
-    memset(image->taken, 0, (size_t)image->targets * sizeof *image->taken);
+    if (image->targets > 0) memset(image->taken, 0, (size_t)image->targets * sizeof *image->taken);
     for (int d = 0; d < image->answers; d++) {
         double best = least;
         int    match = -1;
@@ -91,7 +91,7 @@ Status precision_add(Precision *p, Band band, const PrecisionTarget *target, int
     bool         asked[256] = {false};
     const Status status = make_room(p, more, targets);
     if (status != STATUS_OK) return status;
-    PrecisionEntry *entry = p->entry + p->count;
+    PrecisionEntry *entry = p->entry ? p->entry + p->count : NULL;
     for (int k = 0; k < m->answers; k++) {
         const Answer *a = m->answer[k].answer;
         entry[k] = (PrecisionEntry){.score = a->score,

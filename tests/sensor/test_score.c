@@ -155,6 +155,45 @@ static void test_edges(void **state)
     }
 }
 
+/* Of two targets that are equally near, the answer names that of the lower id, which stands second here: the truck. */
+static void test_equally_near(void **state)
+{
+    (void)state;
+    static const int left[4] = {100, 100, 110, 106}, right[4] = {104, 100, 114, 106};
+    ScoreFolder      f;
+    ScoreReport      report;
+    score_folder_open(&f);
+    score_frame(&f, 0, lwir);
+    score_target(&f, "", 9, "tank", left, 40);
+    score_target(&f, ",", 3, "truck", right, 40);
+    score_frame_end(&f);
+    fputs("{\"frame\":0,\"class\":\"truck\",\"box_px\":[102,100,112,106]}\n", f.answers);
+    const ScoreRecogniser *r = scored(&report, &f, NULL);
+    CHECK(r->total.chances == 2 && r->total.found == 1 && r->total.recognised == 1);
+    score_report_free(&report);
+}
+
+/* Ages 1 to 21 ms in some order: the least that half, and 95 %, do not exceed are the 11th and the 20th. */
+static void test_ages(void **state)
+{
+    (void)state;
+    ScoreFolder f;
+    ScoreReport report;
+    score_folder_open(&f);
+    for (int frame = 0; frame < 21; frame++) {
+        score_frame(&f, frame, lwir);
+        score_frame_end(&f);
+        fprintf(f.answers, "{\"frame\":%d,\"latency_ms\":%d,\"late\":%s}\n", frame, 1 + frame * 5 % 21,
+                frame % 10 == 3 ? "true" : "false");
+    }
+    const ScoreRecogniser *r = scored(&report, &f, NULL);
+    CHECK(r->answers == 0 && r->total.frames_answered == 21 && r->ages.count == 21 && r->ages.late == 2);
+    CHECK_NEAR(r->ages.median_ms, 11, 0);
+    CHECK_NEAR(r->ages.p95_ms, 20, 0);
+    CHECK_NEAR(r->ages.max_ms, 21, 0);
+    score_report_free(&report);
+}
+
 /* Neither right nor wrong: on a target of 4 px (below 5), on a hidden one, within a small one's region. */
 static void test_ignored(void **state)
 {
@@ -265,6 +304,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rates),          cmocka_unit_test(test_average_precision),
         cmocka_unit_test(test_edges),          cmocka_unit_test(test_ignored),
+        cmocka_unit_test(test_equally_near),   cmocka_unit_test(test_ages),
         cmocka_unit_test(test_rules),          cmocka_unit_test(test_curve),
         cmocka_unit_test(test_lines_of_sight),
     };

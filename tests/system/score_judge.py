@@ -69,8 +69,13 @@ def coco_make(folder, seed):
                         s = r.choice([0, 0.02, 0.1, 0.25])
                         results.append({"image_id": image, "category_id": ids[r.choice([kind, kind, kind, r.choice(classes)])],
                                         "bbox": [x + s * w, y - s * h, w, h], "score": r.randrange(0, 40) / 40})
-                for k in range(r.choice([0, 1, 3, 130 if frame == 7 else 0])):
+                    if w % 3 == 0: # an IoU of one half, exactly
+                        results.append({"image_id": image, "category_id": ids[kind], "bbox": [x + w // 3, y, w, h], "score": r.randrange(0, 40) / 40})
+                for k in range(r.choice([0, 1, 3])):
                     results.append({"image_id": image, "category_id": r.choice(list(ids.values()) + [5]), "bbox": box(), "score": r.randrange(0, 40) / 40})
+                if frame % 9 == 7: # more than a hundred of a class, of which the last are right
+                    results += [{"image_id": image, "category_id": 1, "bbox": box(), "score": 1.0} for k in range(97)]
+                    results += [{"image_id": image, "category_id": 1, "bbox": b, "score": 0.99 - 0.01 * k} for k, (_, _, b) in enumerate(places)]
     # where scores are equal pycocotools goes by the order in the file; `score` by what the answers say
     results.sort(key=lambda a: (a["image_id"], -a["score"], a["bbox"], a["category_id"]))
     names = json.load(open(sys.argv[4])) if len(sys.argv) > 4 else {}
