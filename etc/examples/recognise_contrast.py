@@ -7,7 +7,7 @@
 An inner window slides over the image, about it a guard, which belongs to neither, and an outer window. The contrast is the
 mean of the inner less that of the outer, over the standard deviation of the outer. It is normalised once more by how much
 that varies over the whole image, so that one threshold holds for calm and for cluttered scenes (a constant rate of false
-alarms); of windows that overlap, the best is kept. All of it: etc/reference/recognisers.md."""
+alarms); of windows that overlap one is kept. All of it: etc/reference/recognisers.md."""
 import math
 
 import numpy
@@ -20,7 +20,8 @@ GUARD, OUTER = 1.5, 2.2  # of these windows over the inner one
 SHARE = 0.6              # of the outer window that must lie within the image
 THRESHOLD = 5.0          # in standard deviations over the image
 EDGE = 3.0               # in standard deviations of the surroundings: what belongs to a box
-OVERLAP = 0.2            # intersection over union above which two detections are one
+SHARED = 0.5             # of the smaller box, above which two detections are one
+LARGER = 0.5             # share of the best score with which a larger box counts for more
 
 
 class Sums:
@@ -69,22 +70,31 @@ def normalised(values):
     return (values - median) / (spread + 1e-30)
 
 
-def overlap(a, b):
-    """Intersection over union of two boxes."""
+def shared(a, b):
+    """Intersection over the smaller of two boxes: 1 where one holds the other."""
     width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
     if width <= 0 or height <= 0:
         return 0.0
-    both = width * height
-    return both / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - both)
+    return width * height / min((c[2] - c[0]) * (c[3] - c[1]) for c in (a, b))
 
 
 def suppressed(found):
-    """Without those that overlap a better one."""
+    """One of those that share most of the smaller one's area: with the best score, and the largest box of those at least
+    LARGER times as good, since the best window often fits a hot part of a vehicle."""
     kept = []
     for one in sorted(found, key=lambda d: -d.score):
-        if all(overlap(one.box, other.box) <= OVERLAP for other in kept):
+        for i, other in enumerate(kept):
+            if shared(one.box, other.box) > SHARED:
+                if one.score >= LARGER * other.score:
+                    kept[i] = other._replace(box=max(one.box, other.box, key=_area))
+                break
+        else:
             kept.append(one)
     return kept
+
+
+def _area(box):
+    return (box[2] - box[0]) * (box[3] - box[1])
 
 
 def fitted(plane, noise, row, column, half_width, half_height):
