@@ -16,6 +16,12 @@ check "the hottest pixel answers once a frame" eval '[ "$(awk -F, "\$2 == \"hott
 check "false alarms a square degree: of a field of 5.4962 by 4.1234 degrees" eval \
     'awk -F, "\$2 == \"contrast\" && \$3 == \"all\" { exit !(sqrt((\$10 / \$13 / (5.4962 * 4.1234) - 1) ^ 2) < 0.002) }" "$rows"'
 
+# the page has the record's figures
+for name in hottest contrast shape; do
+    line=$(awk -F, -v n=$name '$1 == "full" && $2 == n && $3 == "all" { printf "| %s | %.2f (%.2f .. %.2f) | %.2f | %.2f (", n, $6, $7, $8, $14, $10 }' tests/scores.csv)
+    check "the page's figures of $name are the record's: $line" grep -qF "$line" etc/reference/recognisers.md
+done
+
 # judged COLUMN VALUE: by a record in which that of the hottest pixel is another
 judged() { awk -F, -v OFS=, -v c="$1" -v v="$2" '$1 == "small" && $2 == "hottest" && $3 == "all" { $c = v } { print }' "$rows" >"$tmp/record.csv"
     scores --sweep small --rows "$rows" --record "$tmp/record.csv"; }
