@@ -127,7 +127,19 @@ cp "$pitviper" "$tmp/moved/bin/"
 sed 's/^duration_s: 30/duration_s: 7/' etc/scenarios/demo.yaml >"$tmp/moved/share/pitviper/scenarios/demo.yaml"
 (cd / && "$tmp/moved/bin/pitviper" exercise demo -o "$tmp/moved.pcap") >"$tmp/stdout"
 check "share beside the program comes first" grep -q '^7.0 s' "$tmp/stdout"
-check "the demo's help builds nothing" [ "$(here=$PWD; cd / && "$here/etc/demo" --help | wc -l)" = 5 ]
+check "the demo's help builds nothing" [ "$(here=$PWD; cd / && "$here/etc/demo" --help | wc -l)" = 6 ]
+# in a tree where nothing is built: what the demo asks of the program
+mkdir -p "$tmp/tree/etc" "$tmp/tree/build/release" "$tmp/tree/bin"
+cp etc/demo "$tmp/tree/etc/"
+printf '#!/bin/sh\necho "$@" >>%q\n' "$tmp/asked" >"$tmp/tree/build/release/pitviper"
+printf '#!/bin/sh\n' | tee "$tmp/tree/etc/setup" >"$tmp/tree/bin/cmake"
+chmod +x "$tmp/tree/build/release/pitviper" "$tmp/tree/etc/setup" "$tmp/tree/bin/cmake"
+asked() { rm -f "$tmp/asked"; PATH=$tmp/tree/bin:$PATH "$tmp/tree/etc/demo" "$tmp/shown" "$@" >/dev/null 2>&1; grep -oE 'sensor.preset=[^ ]*' "$tmp/asked" | xargs; }
+check "the demo has cameras" [ "$(asked)" = sensor.preset=staring_mwir,staring_lwir,tv ]
+check "at its size and field of view" grep -qE -e '^replay .*--size 720x486 --set sensor.hfov_deg=6 ' "$tmp/asked"
+check "those of the bands that are asked for" [ "$(asked --bands lwir,radar)" = sensor.preset=staring_lwir ]
+check "or none" [ "$(asked --set sensor.bands=radar)" = sensor.preset=none ]
+check "and the exact image when that is asked for, last" [ "$(asked --set sensor.preset=none)" = "sensor.preset=staring_mwir,staring_lwir,tv sensor.preset=none" ]
 
 # ---- a live node says at once what it could not do at the end
 : >"$tmp/file"

@@ -10,6 +10,7 @@ name=pitviper-test-$$
 ring=/dev/shm/$name
 trap 'clean_up; rm -f "$ring"* "/dev/shm/.pitviper-$name"*' EXIT
 check "the example is built by cc alone" cc -std=c99 -O1 -Wall -Wextra -Werror -I etc/include etc/examples/read_memory.c -o "$tmp/read_memory"
+check "and the recogniser" cc -std=c99 -O1 -Wall -Wextra -Werror -I etc/include etc/examples/recognise_hottest.c -lm -o "$tmp/recognise_hottest"
 printf '#include <pitviper_memory.h>\nint main() { PitviperMemory m; return pitviper_memory_open(&m, "") == 0; }\n' >"$tmp/a.cpp"
 check "the header is C++ too" c++ -std=c++11 -Wall -Wextra -Werror -fsyntax-only -I etc/include "$tmp/a.cpp"
 
@@ -102,17 +103,27 @@ rm -r "$tmp/raw_c" && mkdir "$tmp/raw_c"
 reader c "$tmp/read_memory" "$name" --wait $patience --in-order --raw "$tmp/raw_c"
 sample=$(sed -n '/^```python/,/^```/{/^```/d;p}' etc/reference/memory.md) # as a reader of the manual has it
 reader python python3 -u -c "${sample//seeker/$name}"
-node counts --set publish.memory_planes=counts --set sensor.preset=staring_lwir --set detector.raw=true --speed 1 --rate 1 --from +14 --to +16 --set publish.detections_port="$port"
+reader hottest "$tmp/recognise_hottest" "$name" mwir
+node counts --bands lwir,mwir --set publish.memory_planes=counts --set sensor.preset=staring_lwir,staring_mwir --set detector.raw=true --speed 1 --rate 1 --from +14 --to +16 --set publish.detections_port="$port"
 has_read c 1 # the node does not end before Python has some
 kill -STOP "$node"
 check "Python has its first frame" until_true waits_again python
+check "the recogniser in C has, too" until_true waits_again hottest
 kill -CONT "$node"
 wait "$node"
 check "a node with raw counts ends well" [ $? = 0 ]
 check "the dead node's ring was replaced, and it says so" grep -q "memory: replaced '$name', left behind by process" "$tmp/counts.said"
-for who in c python; do check "its reader $who ends with it" ended_well "$who"; done
-check "detections from Python are taken" grep -qE "^answers: [1-3] datagrams taken$" "$tmp/counts.said"
-check "with their answers" eval '[ "$(grep -c "\"class\":\"hot\"" "$tmp/counts/answers.jsonl")" -ge 1 ]'
+for who in c python hottest; do check "its reader $who ends with it" ended_well "$who"; done
+check "detections of both bands are taken" grep -qE "^answers: [2-6] datagrams taken$" "$tmp/counts.said"
+check "with the answers of Python" eval '[ "$(grep -cE "\"band\":\"lwir\",.*\"class\":\"hot\"" "$tmp/counts/answers.jsonl")" -ge 1 ]'
+# the recogniser in C by the ring is the one in Python by the files
+answered() { sed -nE 's/^\{"frame": ?([0-9]+), ?"band": ?"mwir",.*"box_px": ?\[([^]]*)\], ?"score": ?([0-9.]+).*/\1 \2 \3/p' "$1" | tr -d , | boxes_of; }
+boxes_of() { awk '{ printf "%d %d %d %d %d %.4f\n", $1, $2, $3, $4, $5, $6 }'; }
+cp "$tmp/counts/answers.jsonl" "$tmp/live.jsonl"
+check "the recogniser in Python reads the run's files" eval \
+    'python3 etc/examples/recognise_hottest.py "$tmp/counts" --bands mwir --answers "$tmp/offline.jsonl" >/dev/null'
+check "which says of a frame what the one in C answered" eval \
+    '[ "$(answered "$tmp/live.jsonl" | wc -l)" -ge 1 ] && [ -z "$(comm -23 <(boxes_of <"$tmp/hottest.said" | sort) <(answered "$tmp/offline.jsonl" | sort))" ]'
 check "raw counts are those of the files" eval '"$build/tests/memory_planes" "$tmp/counts" "$tmp/raw_c" >/dev/null'
 check "nothing is left in /dev/shm" [ -z "$(find /dev/shm -name "*$name*")" ]
 

@@ -23,6 +23,13 @@ sweep "$tmp/lists.yaml" "$tmp/lists" --no-files
 check "a list in a list is one value, and the same said otherwise is run once" said '1 variant left out: equal to others'
 check "a list in a list: both bands, and one" [ "$(grep -ohE '"bands":"[a-z,]*"' "$tmp/lists/manifest.jsonl" | tr '\n' ' ')$(grep -ohE '"sensor.bands":"[a-z,]*"' "$tmp/lists/manifest.jsonl" | tr '\n' ' ')" = '"sensor.bands":"mwir,lwir" "sensor.bands":"lwir" ' ]
 
+# the example of etc/reference/products.md, of one time, weather and seed: cameras, and the exact image beside them
+sed -nE '/^    axes:$/,/^$/p' etc/reference/products.md | sed -E 's/(utc|visibility_m|seed): \[([^],]*),.*/\1: \2/' >"$tmp/manual.yaml"
+sweep "$tmp/manual.yaml" "$tmp/manual"
+check "the manual's sweep: three sensors" [ "$(statuses "$tmp/manual")" = ' 3 "status":"made" ' ]
+check "two of cameras, whose counts there are, and none" eval \
+    '[ "$(grep -c "\"sensor.preset\":\"[a-z_0-9]*,tv\"" "$tmp/manual/manifest.jsonl") $(find "$tmp/manual" -path "*/raw/optical/*.png" | wc -l)" = "2 2" ]'
+
 slip() { # slip WHAT PATTERN TEXT
     printf "$3" >"$tmp/slip.yaml"
     sweep "$tmp/slip.yaml" "$tmp/slip"
