@@ -108,7 +108,7 @@ static void put_confusion(FILE *page, const ScoreReport *report, int k)
         fputs("</th>", page);
         for (int j = 0; j < classes + 2; j++)
             if (column[j] && !(i == classes && j == classes + 1))
-                put_confusion_cell(page, c->count[i][j], of, i == j, j >= classes);
+                put_confusion_cell(page, c->count[i][j], of, i == j && i < classes, j >= classes);
             else if (column[j]) fputs("<td class=\"end\"></td>", page);
         fputs("</tr>\n", page);
     }

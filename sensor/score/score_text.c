@@ -11,8 +11,16 @@ static const char *figure(char out[24], double value)
     return out;
 }
 
-/* `0.842 (0.71 .. 0.92)` */
+/* `0.842 (0.710 .. 0.920)`, in columns */
 static const char *share(char out[96], const ScoreShare *s)
+{
+    if (isnan(s->value)) return "-";
+    snprintf(out, 96, "%.3f (%.3f .. %.3f)", s->value, s->low, s->high);
+    return out;
+}
+
+/* The same of a count, which has no highest value. */
+static const char *rate(char out[96], const ScoreShare *s)
 {
     char value[24], low[24], high[24];
     if (isnan(s->value)) return "-";
@@ -45,7 +53,7 @@ static void print_rates(FILE *to, const char *name, const ScoreRates *r)
 {
     char detection[96], recognition[96], frame[96], deg2[24], km2[24];
     fprintf(to, "  %-16s %8lld  %-24s %-24s %-26s %9s %9s\n", name, r->chances, share(detection, &r->detection),
-            share(recognition, &r->recognition), share(frame, &r->per_frame), figure(deg2, r->per_deg2.value),
+            share(recognition, &r->recognition), rate(frame, &r->per_frame), figure(deg2, r->per_deg2.value),
             figure(km2, r->per_km2.value));
 }
 
