@@ -181,7 +181,7 @@ static const char *cell_name(char out[96], const ScoreRecogniser *r)
 }
 static const char *cell_found(char out[96], const ScoreRecogniser *r) { return share(out, &r->total.detection); }
 static const char *cell_class(char out[96], const ScoreRecogniser *r) { return share(out, &r->total.recognition); }
-static const char *cell_false(char out[96], const ScoreRecogniser *r) { return share(out, &r->total.per_frame); }
+static const char *cell_false(char out[96], const ScoreRecogniser *r) { return rate(out, &r->total.per_frame); }
 static const char *cell_ap(char out[96], const ScoreRecogniser *r) { return figure(out, r->map); }
 static const char *cell_centre(char out[96], const ScoreRecogniser *r) { return figure(out, r->ap_centre); }
 static const char *cell_px(char out[96], const ScoreRecogniser *r) { return figure(out, r->errors.rms_px); }
