@@ -152,6 +152,7 @@ static Status write_truth(const char *out, const SavedFrame *file, const SavedSc
                           .hfov_rad = s->config.sensor.hfov_deg * rad_per_deg,
                           .gimbal_at_limit = file->at_limit,
                           .scene_rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]},
+                          .ground_km2 = file->ground_km2,
                           .sun = &again->sun,
                           .frame_sha256 = again->made.sha256,
                           .radar = radar};

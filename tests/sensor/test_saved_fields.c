@@ -153,7 +153,7 @@ static SavedFrame frame_of_now(void)
     static GroundStand      stand;
     static float            patch_k[2] = {290, 310};
     static const WoodsPlace place[2] = {{{1, 2}}, {{3, 4}}};
-    SavedFrame file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .planted = true};
+    SavedFrame file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .planted = true, .ground_km2 = 1.5};
     /* what writes an older version changes what it writes */
     entity = (SnapshotEntity){.model = -1, .p_ecef = {6378137, 0, 0}, .first_patch = 0, .patches = 2, .dt_k = 4};
     stand = (GroundStand){.p_ecef = {6378137, 0, 0},
@@ -224,13 +224,14 @@ static void older_versions_are_read(void **state)
 {
     enum { places = 4 + 2 * 16, blow = 9 * 4 + 2 * 8, patches = 12 + 4 + 2 * 4, roles = 21 * 4 };
     static const int less[chunks_version][changed_parts] = {/* than now, from version 1 */
-                                                            {8, places + 8, blow, patches - roles},
-                                                            {8, places + 8, blow, patches - roles},
-                                                            {8, places + 8, blow, 0},
-                                                            {8, places + 8, 0, 0},
-                                                            {4, places + 8, 0, 0},
-                                                            {4, 8, 0, 0},
-                                                            {0, 8, 0, 0},
+                                                            {16, places + 8, blow, patches - roles},
+                                                            {16, places + 8, blow, patches - roles},
+                                                            {16, places + 8, blow, 0},
+                                                            {16, places + 8, 0, 0},
+                                                            {12, places + 8, 0, 0},
+                                                            {12, 8, 0, 0},
+                                                            {8, 8, 0, 0},
+                                                            {8, 0, 0, 0},
                                                             {0, 0, 0, 0}};
     Arena           *arena = arena_create();
     size_t           now[parts], octets[parts];
@@ -247,6 +248,7 @@ static void older_versions_are_read(void **state)
         const SnapshotEntity *e = &got.snapshot.entity[0];
         const GroundStand    *stand = &got.snapshot.marks.stand[0];
         CHECK(got.snapshot.count == 1 && got.snapshot.marks.stands == 1 && got.woods.most_trees == 70);
+        CHECK(version >= 9 ? got.ground_km2 == 1.5 : isnan(got.ground_km2));
         CHECK(got.woods.far_half_m == (version >= 8 ? 20000 : 0));
         CHECK(got.request.refraction == (version >= 7));
         CHECK(got.woods.place_count == (version >= 6 ? 2 : 0));

@@ -88,6 +88,7 @@ static Status gather(SavedFrame *file, SavedMade *made, char **settings, const F
                          .request = f->request,
                          .eye = *save->eye,
                          .rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]},
+                         .ground_km2 = f->record.ground_km2,
                          .at_limit = f->record.gimbal_at_limit,
                          .all_on_ground = save->all_on_ground};
     memcpy(file->r_ecef_from_body, f->record.r_ecef_from_body, sizeof file->r_ecef_from_body);

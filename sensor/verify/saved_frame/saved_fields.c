@@ -232,6 +232,7 @@ void saved_fields_request(Fields *f, SavedFrame *file)
     RenderRequest *r = &file->request;
     View          *v = &r->view;
     int            bands = (int)r->bands, optical = (int)r->optical, sampling = (int)r->sampling;
+    double         km2 = file->ground_km2 >= 0 ? file->ground_km2 : -1; /* -1: not known */
     field_int(f, "picture width", &v->width, 8, 8192);
     field_int(f, "picture height", &v->height, 8, 8192);
     field_real(f, "focal length", &v->focal_px, 1e-3, 1e9);
@@ -269,6 +270,9 @@ void saved_fields_request(Fields *f, SavedFrame *file)
     r->sampling = (Sampling)sampling;
     if (f->version >= 7) field_bool(f, "refraction", &r->refraction);
     else r->refraction = false;
+    if (f->version >= 9) field_real(f, "ground in the image", &km2, -1, 1e6);
+    else km2 = -1;
+    file->ground_km2 = km2 >= 0 ? km2 : NAN;
 }
 
 /* ---- plants -------------------------------------------------------------------------------------- */

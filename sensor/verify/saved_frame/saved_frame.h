@@ -58,6 +58,7 @@ typedef struct SavedFrame {
     EyeState       eye;
     double         r_ecef_from_body[9];
     double         rate_px_s[2]; /* image motion of the scene, for detectors */
+    double         ground_km2;   /* as in FrameRecord */
     bool           at_limit, all_on_ground;
     LandscapeParts ground;
     char           ground_sha256[sha256_text_size]; /* of the octets that were read as the ground */
