@@ -153,7 +153,12 @@ static SavedFrame frame_of_now(void)
     static GroundStand      stand;
     static float            patch_k[2] = {290, 310};
     static const WoodsPlace place[2] = {{{1, 2}}, {{3, 4}}};
-    SavedFrame file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .planted = true, .ground_km2 = 1.5};
+    SavedFrame              file = {.version = "1",
+                                    .host = "1:2:3",
+                                    .config_sha256 = "",
+                                    .settings = "seed: 1\n",
+                                    .planted = true,
+                                    .ground_km2 = 1.5};
     /* what writes an older version changes what it writes */
     entity = (SnapshotEntity){.model = -1, .p_ecef = {6378137, 0, 0}, .first_patch = 0, .patches = 2, .dt_k = 4};
     stand = (GroundStand){.p_ecef = {6378137, 0, 0},

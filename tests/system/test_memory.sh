@@ -26,6 +26,16 @@ reads() { [ "$(lines "$1")" -ge "$2" ]; }
 has_read() { until_true reads "$@"; } # NAME COUNT: until it has read so many frames
 # waits_again NAME: it has read a frame, and done with it what it does: of a node that is stopped there is no other
 waits_again() { reads "$1" 1 && [ "$(cut -d' ' -f3 "/proc/${reader[$1]}/stat")" = S ]; }
+# waits_nudged NAME: the same; a node that was stopped between a frame and waking who waits for it goes on for a moment
+waits_nudged() {
+    waits_again "$1" && return
+    sleep 2
+    waits_again "$1" && return
+    kill -CONT "$node"
+    sleep 0.02
+    kill -STOP "$node"
+    return 1
+}
 ended_well() { wait "${reader[$1]}" || { tail -n 3 "$tmp/$1.said"; return 1; }; }
 # node NAME options: a paced replay in the background; its process in $node
 node() {
@@ -56,7 +66,7 @@ kill -STOP "${reader[stopped]}"
 kill -KILL "${reader[killed]}"
 wait "${reader[killed]}" 2>/dev/null
 check "the killed one is dead" [ $? = 137 ]
-for who in c python; do check "the reader $who reads" until_true waits_again "$who"; done
+for who in c python; do check "the reader $who reads" until_true waits_nudged "$who"; done
 kill -CONT "$node"
 has_read c 6
 kill -CONT "${reader[stopped]}"
@@ -107,8 +117,8 @@ reader hottest "$tmp/recognise_hottest" "$name" mwir
 node counts --bands lwir,mwir --set publish.memory_planes=counts --set sensor.preset=staring_lwir,staring_mwir --set detector.raw=true --speed 1 --rate 1 --from +14 --to +16 --set publish.detections_port="$port"
 has_read c 1 # the node does not end before Python has some
 kill -STOP "$node"
-check "Python has its first frame" until_true waits_again python
-check "the recogniser in C has, too" until_true waits_again hottest
+check "Python has its first frame" until_true waits_nudged python
+check "the recogniser in C has, too" until_true waits_nudged hottest
 kill -CONT "$node"
 wait "$node"
 check "a node with raw counts ends well" [ $? = 0 ]
