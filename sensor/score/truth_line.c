@@ -60,6 +60,7 @@ static int by_id(const void *a, const void *b)
 
 static bool has_twice(TruthFrame *frame)
 {
+    if (frame->count < 2) return false;
     for (int i = 0; i < frame->count; i++) frame->sorted[i] = frame->target[i].id;
     qsort(frame->sorted, (size_t)frame->count, sizeof *frame->sorted, by_id);
     int i = 1;
