@@ -166,13 +166,17 @@ class Tracks:
 
 # ---- two drivers -----------------------------------------------------------------------------------------------------
 
+def said(found, tracks):
+    """Detections as JSON has them, in a file and on the way to a node."""
+    return [{'class': d.class_name, 'box_px': [round(float(v), 2) for v in d.box], 'score': round(float(d.score), 4),
+             'track': int(t)} for d, t in zip(found, tracks)]
+
+
 def lines(frame, band, found, tracks):
     """Lines of answers.jsonl (`pitviper help answers`), without the times that only a node knows."""
     if not found:
         return [{'frame': frame, 'band': band, 'answer': 0, 'of': 0}]
-    return [{'frame': frame, 'band': band, 'answer': i + 1, 'of': len(found), 'class': d.class_name,
-             'box_px': [round(float(v), 2) for v in d.box], 'score': round(float(d.score), 4), 'track': t}
-            for i, (d, t) in enumerate(zip(found, tracks))]
+    return [{'frame': frame, 'band': band, 'answer': i + 1, 'of': len(found), **d} for i, d in enumerate(said(found, tracks))]
 
 
 MOST = 64  # detections of an answer
@@ -263,9 +267,7 @@ def run_ring(recogniser, name, wait_s, bands=None):
             found = best(recogniser.find(look))
             numbers = tracks.number(frame.record.frame, found, plane.shape[1])
             if ring.header.detections_port:
-                send_answer(to, ring.header.detections_port, frame.record.frame, named[band],
-                            [{'class': d.class_name, 'score': d.score, 'box_px': d.box, 'track': t}
-                             for d, t in zip(found, numbers)])
+                send_answer(to, ring.header.detections_port, frame.record.frame, named[band], said(found, numbers))
             frames, detections = frames + 1, detections + len(found)
     return frames, detections
 

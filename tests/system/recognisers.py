@@ -3,14 +3,17 @@ import io
 import json
 import os
 import pathlib
+import socket
 import sys
 import tempfile
+import types
 import zlib
 
 import numpy
 from PIL import Image
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../etc/examples'))
+import read_memory  # noqa: E402
 import recognise  # noqa: E402
 import recognise_shape  # noqa: E402
 from recognise_contrast import Contrast, Sums, contrast, noise_of, shared, suppressed  # noqa: E402
@@ -203,6 +206,34 @@ def runs(folder):
         check('folder: a band that is not there is named', 'optical' in str(reason))
 
 
+# ---- a ring: what is sent is what is found -------------------------------------------------------------------------------
+def ring():
+    """A ring of one frame, of swir in the place of lwir, and the datagram that answers it."""
+    listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    listener.bind(('127.0.0.1', 0))
+    listener.settimeout(10)
+    plane = scene(3, 100)
+
+    class Ring:
+        def __init__(self, name, wait_s):
+            self.header = types.SimpleNamespace(detections_port=listener.getsockname()[1])
+            self.planes = [types.SimpleNamespace(band_name=b'swir', band=2)]
+
+        def frames(self):
+            yield types.SimpleNamespace(record=types.SimpleNamespace(frame=7, focal_px=FOCAL_PX), planes={'swir/Y': plane})
+
+    read_memory.Ring = Ring
+    for recogniser in (Hottest(), Contrast(), Shape()):
+        name = type(recogniser).__name__
+        counts = recognise.run_ring(recogniser, 'none', 1, ['swir'])
+        answer = json.loads(listener.recv(65536))
+        want = recognise.best(recogniser.find(recognise.Look({'swir': plane}, FOCAL_PX)))
+        check(f'ring: {name} answers its frame and band', (answer['frame'], answer['band']) == (7, 'lwir') and counts[0] == 1)
+        check(f'ring: {name}, all that it found', want and [(tuple(d['box_px']), d['class'], d['track']) for d in answer['detections']] ==
+              [(d.box, d.class_name, k + 1) for k, d in enumerate(want)])
+        check(f'ring: {name}, scores', all(abs(d['score'] - w.score) < 1e-4 for d, w in zip(answer['detections'], want)))
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -212,6 +243,7 @@ def main():
         shape()
         tracks()
         runs(folder)
+        ring()
     print(f'{failures} failed')
     sys.exit(failures > 0)
 
