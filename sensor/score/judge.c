@@ -1,18 +1,11 @@
 /* sensor/score/judge.c: judges the answers of a frame: rates, confusion, errors, ages. */
 #include "sensor/score/judge_private.h"
 #include "sensor/frame/target_record.h"
+#include "sensor/score/grown.h"
 
 #include <stdlib.h>
 
 /* ---- lists ----------------------------------------------------------------------------------------- */
-
-/* The list with room for so many; the old one, and *status, where memory is out. */
-static void *grown(Status *status, void *list, size_t count, size_t size)
-{
-    void *more = *status == STATUS_OK ? realloc(list, count * size) : NULL;
-    if (!more) *status = STATUS_NO_MEMORY;
-    return more ? more : list;
-}
 
 static Status make_room(Judge *j, size_t targets, size_t answers)
 {

@@ -1,6 +1,8 @@
 /* sensor/score/match.c: matches the answers of a frame and band with its targets. */
 #include "sensor/score/match.h"
 
+#include "sensor/score/grown.h"
+
 #include <stdlib.h>
 
 /* ---- boxes ---------------------------------------------------------------------------------------- */
@@ -39,14 +41,6 @@ static bool contains(const double box[4], const double point[2], double margin_x
 }
 
 /* ---- lists ---------------------------------------------------------------------------------------- */
-
-/* The list with room for so many; the old one, and *status, where memory is out. */
-static void *grown(Status *status, void *list, size_t count, size_t size)
-{
-    void *more = *status == STATUS_OK && count <= INT32_MAX / 4 ? realloc(list, count * size) : NULL;
-    if (!more) *status = STATUS_NO_MEMORY;
-    return more ? more : list;
-}
 
 static Status room_for_targets(MatchFrame *m, size_t count)
 {

@@ -285,7 +285,7 @@ static void put_head(FILE *page, const Bisect *b)
               b->d.old.given, b->d.new.given, b->c.name);
     html_text(
         page,
-        "%d difference%s, %d runs beside those of old and new, each compared with the run of old, which is the baseline in what follows.",
+        "%d difference%s, %d runs beside those of old and new, each compared with the run of old: below, the baseline is that run.",
         b->d.count, b->d.count == 1 ? "" : "s", b->runs);
     fputs("</p>\n<p>", page);
     say_approved(said, b);
