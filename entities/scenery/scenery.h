@@ -1,0 +1,82 @@
+/* entities/scenery/scenery.h: what stands in the world and takes no part in the exercise, ready to be seen: buildings
+ * and works (of terrain/culture), and clutter: civil vehicles, machines, animals, rocks, fires
+ */
+#ifndef ENTITIES_SCENERY_SCENERY_H
+#define ENTITIES_SCENERY_SCENERY_H
+
+#include "entities/models/model.h"
+#include "entities/table/snapshot.h"
+
+typedef enum SceneryKind {
+    SCENERY_BUILDINGS, /* a cell of ground with its buildings and works, one mesh */
+    SCENERY_CLUTTER,   /* one thing; a class of SceneryClass */
+} SceneryKind;
+
+/* Of clutter, as truth names them. */
+typedef enum SceneryClass {
+    CLUTTER_NONE, /* not clutter */
+    CLUTTER_CAR,
+    CLUTTER_VAN,
+    CLUTTER_LORRY,
+    CLUTTER_TRACTOR,
+    CLUTTER_GENERATOR,
+    CLUTTER_MACHINE, /* excavator, combine */
+    CLUTTER_TRAILER,
+    CLUTTER_WRECK,
+    CLUTTER_FIRE, /* open fire, burning barrel */
+    CLUTTER_HEAP, /* smouldering: dung, charcoal, refuse */
+    CLUTTER_ANIMAL,
+    CLUTTER_ROCK, /* and dry bare slopes */
+    CLUTTER_CRATES,
+    CLUTTER_TENT,
+    CLUTTER_CLASSES
+} SceneryClass;
+const char *scenery_class_name(SceneryClass of); /* "car" ... */
+
+/* What heats a kind of clutter: solved once for all objects that share it, as an entity of that model which has always
+ * done the same */
+typedef struct SceneryState {
+    int          model; /* of Scenery.model */
+    EntityDrives drives;
+    float        heading_rad; /* clockwise from north */
+    float        stood_s;     /* time since its engine stopped; 0: it runs, or never ran */
+} SceneryState;
+
+typedef struct SceneryObject {
+    uint64_t id;                /* the same in every run */
+    uint8_t  kind;              /* SceneryKind */
+    uint8_t class;              /* SceneryClass */
+    uint8_t damage;             /* as an entity's */
+    int     model;              /* of Scenery.model */
+    int     state;              /* of Scenery.state; -1: its parts are as warm as their constructions (of buildings) */
+    double  p_enu[3];           /* of the model's origin: centre of its base */
+    double  r_enu_from_body[9]; /* body axes: x forward, y right, z down */
+} SceneryObject;
+
+/* An object that drives: its pose is scenery_pose's. */
+typedef struct SceneryMover {
+    int    object;       /* of Scenery.object, whose own pose is that at exercise time 0 */
+    int    first, count; /* of Scenery.path_enu: a closed polyline on the ground */
+    double speed_mps, phase_m;
+} SceneryMover;
+
+typedef struct Scenery {
+    int            models, objects, states, movers, paths;
+    Model         *model;  /* [models]; immutable */
+    SceneryObject *object; /* [objects] */
+    SceneryState  *state;
+    SceneryMover  *mover;
+    double (*path_enu)[3]; /* [paths] */
+    /* of the parts of buildings: the record each belongs to, model by model: part p of model m is of building
+     * part_of[part_first[m] + p] (Building.id); 0: of none */
+    uint64_t *part_of;
+    int      *part_first; /* [models]; -1: its parts are of no building */
+} Scenery;
+
+void scenery_free(Scenery *scenery); /* accepts zeroes */
+
+/* Moves r and p of an object that drives to where it is at a time; others keep their own. */
+void scenery_pose(double p_enu[3], double r_enu_from_body[9], const Scenery *scenery, const SceneryMover *mover,
+                  double t_s);
+
+#endif
