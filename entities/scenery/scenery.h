@@ -1,16 +1,16 @@
 /* entities/scenery/scenery.h: what stands in the world and takes no part in the exercise, ready to be seen: buildings
- * and works (of terrain/culture), and clutter: civil vehicles, machines, animals, rocks, fires
- */
+ * and works (of terrain/culture), and clutter: civil vehicles, machines, animals, rocks, fires. */
+* /
 #ifndef ENTITIES_SCENERY_SCENERY_H
 #define ENTITIES_SCENERY_SCENERY_H
 
 #include "entities/models/model.h"
 #include "entities/table/snapshot.h"
 
-typedef enum SceneryKind {
-    SCENERY_BUILDINGS, /* a cell of ground with its buildings and works, one mesh */
-    SCENERY_CLUTTER,   /* one thing; a class of SceneryClass */
-} SceneryKind;
+    typedef enum SceneryKind {
+        SCENERY_BUILDINGS, /* a cell of ground with its buildings and works, one mesh */
+        SCENERY_CLUTTER,   /* one thing; a class of SceneryClass */
+    } SceneryKind;
 
 /* Of clutter, as truth names them. */
 typedef enum SceneryClass {
