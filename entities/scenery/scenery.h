@@ -1,6 +1,5 @@
 /* entities/scenery/scenery.h: what stands in the world and takes no part in the exercise, ready to be seen: buildings
  * and works (of terrain/culture), and clutter: civil vehicles, machines, animals, rocks, fires. */
-* /
 #ifndef ENTITIES_SCENERY_SCENERY_H
 #define ENTITIES_SCENERY_SCENERY_H
 
