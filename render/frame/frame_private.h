@@ -57,7 +57,7 @@ void pixels_box(double box_px[4], const PixelBlock *block);
 
 /* Areas in steps of 1 / SumRules.steps_per_px of a pixel, powers in steps of the rules' quanta. */
 typedef struct TargetCount {
-    int64_t visible, amodal, hidden_ground, hidden_entity, hidden_plants;
+    int64_t visible, amodal, hidden_ground, hidden_entity, hidden_plants, hidden_scenery;
     int64_t radiance[picture_plane_count];
     int64_t veiled[BAND_COUNT]; /* area times the share of its light that smoke absorbs */
     int     box[4], amodal_box[4];
@@ -390,7 +390,7 @@ struct TargetGrid {
         *before;            /* the same of what hides the target, a pixel that shows some of it */
     TargetGridTruth *truth; /* [pixels]; NULL: not needed */
     /* over the target, px within the image */
-    double visible, amodal, hidden_ground, hidden_entity, hidden_plants;
+    double visible, amodal, hidden_ground, hidden_entity, hidden_plants, hidden_scenery;
     double veiled[BAND_COUNT];          /* area x the share that smoke absorbs */
     double square[picture_plane_count]; /* area x radiance^2 */
     float *cell[picture_plane_count];   /* radiance of each; NULL: neither needed for the budget nor for a detector */

@@ -41,6 +41,11 @@ static void restore_first(Worker *w, const Job *job)
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
         s->hits.entity[p] = picture->entity[px];
         s->hits.instance[p] = picture->instance ? picture->instance[px] : 0;
+        s->hits.kind[p] = picture->entity[px]               ? hit_part
+                          : picture->part[px]               ? hit_scenery
+                          : s->hits.instance[p]             ? hit_plant
+                          : picture->range_m[px] < INFINITY ? hit_ground
+                                                            : hit_sky;
         s->hits.range_m[p] = picture->range_m[px] * (1 - 1e-6); /* a float's: no farther than it was */
     }
 }
