@@ -127,8 +127,8 @@ int invent_village_near(double *away_m, const Inventor *v, double x_m, double y_
 
 static void inventor_free(Inventor *v)
 {
-    invent_ground_close(v);
-    free(v->vertex), free(v->way_first), free(v->way_kind), free(v->village);
+    invent_ground_close(v), invent_sites_close(v);
+    free(v->vertex), free(v->way_first), free(v->way_kind), free(v->village), free(v->built);
     culture_free(&v->culture);
 }
 
@@ -152,8 +152,11 @@ Status culture_invent(Culture *out, const Landscape *landscape, const CultureCon
         v.status = gather_ways(&v);
         if (v.status == STATUS_OK) v.status = gather_villages(&v);
         if (v.status == STATUS_OK && v.way_count > 0) v.status = invent_ground_open(&v);
+        if (v.status == STATUS_OK && v.way_count > 0) v.status = invent_sites_open(&v);
         if (v.status == STATUS_OK && v.way_count > 0) {
-            invent_houses(&v);
+            invent_houses(&v), invent_churches(&v);
+            invent_plots(&v), invent_streets(&v);
+            invent_works(&v), invent_farms(&v), invent_masts(&v);
         }
     }
     if (v.status == STATUS_OK) v.status = culture_index(&v.culture);

@@ -232,8 +232,8 @@ bool invent_is_dry(const Inventor *v, const Rectangle *r, double room_m)
     if (all.x_m - half[0] < v->x0_m + rim_m || all.y_m - half[1] < v->y0_m + rim_m ||
         all.x_m + half[0] > v->x0_m + v->side_m[0] - rim_m || all.y_m + half[1] > v->y0_m + v->side_m[1] - rim_m)
         return false;
-    const int nu = (int)clamp(ceil(2 * all.half_m[0] / step_m), 1, 31) + 1;
-    const int nv = (int)clamp(ceil(2 * all.half_m[1] / step_m), 1, 31) + 1;
+    const int nu = (int)clamp(ceil(2 * all.half_m[0] / step_m), 2, 31) + 1;
+    const int nv = (int)clamp(ceil(2 * all.half_m[1] / step_m), 2, 31) + 1;
     /* half the diagonal between places, so that nothing narrow passes between them */
     const double gap_m = hypot(all.half_m[0] / (nu - 1), all.half_m[1] / (nv - 1));
     for (int k = 0; k < nu * nv; k++) {

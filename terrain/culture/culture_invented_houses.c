@@ -2,6 +2,8 @@
  * style of its own. */
 #include "terrain/culture/culture_invented_private.h"
 
+#include <stdlib.h>
+
 /* What most houses of a village have. */
 typedef struct VillageStyle {
     uint8_t wall, roof_fabric;
@@ -91,9 +93,12 @@ void invent_houses(Inventor *v)
     static const double flats_m = 130; /* from the middle */
     int                 plots;
     const HousePlot    *plot = landscape_plots(v->landscape, &plots);
+    v->built = calloc((size_t)plots + 1, 1);
+    if (!v->built) {
+        v->status = STATUS_NO_MEMORY;
+        return;
+    }
     for (int n = 0; n < plots; n++) {
-        double away_m;
-        invent_village_near(&away_m, v, plot[n].x_m, plot[n].y_m);
         const Rectangle all = invent_plot_rectangle(&plot[n]);
         invent_take(v, &all, TAKEN_PLOT, n);
     }
@@ -111,6 +116,7 @@ void invent_houses(Inventor *v)
             !invent_is_dry(v, &r, 0) || !invent_is_clear(v, &r, (double)b.ridge_m + culture_above_ridge_m))
             continue;
         invent_building(v, &r, &b, n);
+        v->built[n] = 1;
         if (village >= 0) v->houses[village]++;
     }
 }

@@ -5,6 +5,7 @@
  * culture_invented_houses.c    houses on the plots of villages
  * culture_invented_plots.c     what else is on a plot: garages, sheds, fences
  * culture_invented_streets.c   churches, lamps, signs, power lines
+ * culture_invented_sites.c     places beside ways, and what stands on them
  * culture_invented_farms.c     farms
  * culture_invented_works.c     industry and masts */
 #ifndef TERRAIN_CULTURE_CULTURE_INVENTED_PRIVATE_H
@@ -24,8 +25,10 @@ typedef enum TakenKind {
     TAKEN_BUILDING = 1,
     TAKEN_THING = 2,
     TAKEN_LINE = 4,
-    TAKEN_SITE = 8,
-    TAKEN_PLOT = 16
+    TAKEN_WIRES = 8, /* between poles, above the ground */
+    TAKEN_SITE = 16, /* all of a farm, works or churchyard */
+    TAKEN_PLOT = 32,
+    TAKEN_ALL = 63
 } TakenKind;
 
 typedef struct Taken {
@@ -44,7 +47,24 @@ typedef struct GroundGrid {
     int    nx, ny;
 } GroundGrid;
 
-enum { invent_most_villages = 64 };
+enum {
+    invent_most_villages = 64,
+    invent_most_poles = 64, /* of one line */
+    /* numbers of owners: first those of plots */
+    invent_owner_church = 1 << 24,
+    invent_owner_farm = 2 << 24,
+    invent_owner_works = 3 << 24,
+    invent_owner_mast = 4 << 24,
+};
+static const double invent_shortest_span_m = 38, invent_longest_span_m = 60;
+
+/* Vertices of roads, lanes and tracks, by cells of invent_site_cell_m over the finest level. */
+static const double invent_site_cell_m = 1000;
+typedef struct WayCells {
+    int  nx, ny;
+    int *first; /* [nx * ny + 1] of vertex */
+    int *vertex;
+} WayCells;
 
 typedef struct Inventor {
     Culture          culture;
@@ -67,6 +87,8 @@ typedef struct Inventor {
     int      way_count, vertices, *way_first;
     uint8_t *way_kind;
     double (*vertex)[2];
+    WayCells way_cells;
+    uint8_t *built; /* [plots] 1: its house stands */
     /* villages */
     int villages, houses[invent_most_villages]; /* houses: built about each */
     double (*village)[2];
@@ -124,6 +146,50 @@ void invent_line(Inventor *v, const CultureLine *line, const double (*corner_m)[
 /* The nearest village, -1 without any, and how far its centre is. */
 int invent_village_near(double *away_m, const Inventor *v, double x_m, double y_m);
 
+/* ---- culture_invented_plots.c ----------------------------------------------------------------------- */
+
+/* A border of straight sides, each in runs between gates and whatever is in its way. */
+typedef struct Enclosure {
+    CultureLine line;
+    int         corners, gates, owner;
+    double      corner_m[5][2], gate_m[3][2], gate_half_m[3];
+} Enclosure;
+void        invent_enclosure(Inventor *v, const Enclosure *e);
+void        invent_enclose(Enclosure *e, const Rectangle *r); /* its corners are all four of a rectangle */
+CultureLine invent_border(CultureLineKind kind, double height_m);
+/* Whether something top_m high may stand there: room_m from all that stands, on the owner's own plot or site. */
+bool invent_fits(const Inventor *v, const Rectangle *r, double room_m, double top_m, int owner);
+
+/* ---- culture_invented_streets.c ---------------------------------------------------------------------- */
+
+double invent_way_length(const Inventor *v, int way);
+/* A place along a way, left_m to the left of its middle; its direction is the way's. False: beyond its ends. */
+bool invent_way_place(Rectangle *out, const Inventor *v, int way, double along_m, double left_m);
+/* Whether a plot is within near_m, each way. */
+bool invent_is_built_up(const Inventor *v, double x_m, double y_m, double near_m);
+
+/* ---- culture_invented_sites.c ------------------------------------------------------------------------ */
+
+Status invent_sites_open(Inventor *v);
+void   invent_sites_close(Inventor *v);
+/* A place on a way in the inner part of a cell, with the way's direction: on the landscape's ways, or on a track
+ * between fields. False: this hash has none. */
+bool invent_beside_way(Rectangle *out, const Inventor *v, int cell, uint64_t hash, bool on_roads);
+/* A site beside a way, its near side front_m from the way's middle; its own left is away from the way. */
+Rectangle invent_site_beside(const Rectangle *way, bool left, double front_m, const double half_m[2]);
+/* How many ways cross a circle, by the cover. */
+int invent_ways_about(const Inventor *v, double x_m, double y_m, double radius_m);
+/* Share of a rectangle that is scrub, rock or track. */
+double invent_wild_share(const Inventor *v, const Rectangle *r);
+/* Add something at (along, left) of a site, if it fits. */
+bool invent_site_building(Inventor *v, const Rectangle *site, const double at_m[2], const double half_m[2],
+                          const Building *building, int owner);
+bool invent_site_point(Inventor *v, const Rectangle *site, CulturePointKind kind, const double at_m[2],
+                       const double size_m[3], int owner);
+/* Adds a strip of ground between two places of a site. */
+void invent_ground_strip(Inventor *v, const Rectangle *site, CultureLineKind kind, SurfaceClass surface,
+                         const double from_m[2], const double to_m[2], double width_m);
+
 /* ---- steps ----------------------------------------------------------------------------------------- */
 
 /* A building of one level, its ridge along the rectangle or across it, with a roof of that pitch. */
@@ -134,5 +200,11 @@ Building invent_house(const Inventor *v, const Rectangle *r, int village, uint64
 Rectangle invent_plot_rectangle(const HousePlot *plot);
 
 void invent_houses(Inventor *v);
+void invent_plots(Inventor *v);
+void invent_churches(Inventor *v);
+void invent_streets(Inventor *v);
+void invent_works(Inventor *v);
+void invent_farms(Inventor *v);
+void invent_masts(Inventor *v);
 
 #endif
