@@ -175,8 +175,8 @@ static void odd_patches_are_survived(void **state)
     enum { n = 24 };
     static Outline outline;
     int32_t        of[n * n];
-    for (uint64_t k = 0; k < 2000; k++) {
-        for (int c = 0; c < n * n; c++) of[c] = random_uniform(5, k, 0, (uint64_t)c) < (k % 10) / 10.0;
+    for (unsigned k = 0; k < 2000; k++) {
+        for (int c = 0; c < n * n; c++) of[c] = random_uniform(5, k, 0, (uint64_t)c) < 0.1 * (k % 10);
         int stack[n * n], count = 0, first = -1;
         for (int c = 0; c < n * n && first < 0; c++)
             if (of[c] == 1) first = c;
