@@ -1,0 +1,345 @@
+/* terrain/culture/culture_surface.c: patches of roof, cut at their steps, and the roof shape that fits each. */
+#include "terrain/culture/culture_surface.h"
+#include "terrain/culture/outline.h"
+
+#include <stdlib.h>
+
+static const double least_m2 = 12;
+
+/* ---- patches -------------------------------------------------------------------------------------------- */
+
+typedef struct Patches {
+    int      nx, ny, count;
+    int32_t *of;         /* [ny][nx] number of the patch, from 1; 0: no roof */
+    int32_t *todo;       /* cells to look at */
+    int32_t  before_cut; /* of pieces of the patch that is being cut: their numbers are greater */
+} Patches;
+
+static const int32_t unseen = -2; /* a cell of roof that is in no patch yet */
+
+static double roof_of(const SurfaceParts *parts, size_t c)
+{
+    return parts->kind[c] == CELL_BUILDING ? (double)parts->roof_m[c] : NAN;
+}
+
+/* Height of a roof's cell, NAN elsewhere. */
+static double roof_at(const SurfaceParts *parts, int nx, int ny, int x, int y)
+{
+    if (x < 0 || y < 0 || x >= nx || y >= ny) return NAN;
+    return roof_of(parts, (size_t)y * (size_t)nx + (size_t)x);
+}
+
+/* Whether the roof goes on from a cell to its neighbour: by no more than its own slope on either side, and some. */
+static bool goes_on(const void *user, const Patches *p, int x, int y, int dx, int dy)
+{
+    static const double step_m = 0.45;
+    const SurfaceParts *parts = user;
+    const double        here = roof_at(parts, p->nx, p->ny, x, y), there = roof_at(parts, p->nx, p->ny, x + dx, y + dy);
+    const double        before = roof_at(parts, p->nx, p->ny, x - dx, y - dy);
+    const double        after = roof_at(parts, p->nx, p->ny, x + 2 * dx, y + 2 * dy);
+    const double        slope = fmax(isnan(before) ? 0 : fabs(here - before), isnan(after) ? 0 : fabs(after - there));
+    return fabs(there - here) <= step_m + fmin(slope, 1.5);
+}
+
+typedef bool Joins(const void *user, const Patches *p, int x, int y, int dx, int dy);
+
+/* A patch of cells that hold `from`, joined by sides where `joins` says so. */
+typedef struct Patch {
+    int32_t number;
+    size_t  first, last; /* least and greatest index of its cells */
+    int     cells, cuts; /* how often it was cut off one that no shape fits */
+} Patch;
+
+static Patch fill_patch(Patches *p, size_t first, int32_t from, int32_t number, Joins *joins, const void *user)
+{
+    static const int go[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    Patch            patch = {.number = number, .first = first, .last = first};
+    int              count = 0;
+    p->of[first] = number;
+    p->todo[count++] = (int32_t)first;
+    while (count > 0) {
+        const int c = p->todo[--count], x = c % p->nx, y = c / p->nx;
+        patch.cells++;
+        patch.first = (size_t)c < patch.first ? (size_t)c : patch.first;
+        patch.last = (size_t)c > patch.last ? (size_t)c : patch.last;
+        for (int k = 0; k < 4; k++) {
+            const int i = x + go[k][0], j = y + go[k][1];
+            if (i < 0 || j < 0 || i >= p->nx || j >= p->ny) continue;
+            int32_t *there = &p->of[(size_t)j * (size_t)p->nx + (size_t)i];
+            if (*there != from || !joins(user, p, x, y, go[k][0], go[k][1])) continue;
+            *there = number;
+            p->todo[count++] = j * p->nx + i;
+        }
+    }
+    return patch;
+}
+
+/* ---- patches of several heights ------------------------------------------------------------------------- */
+
+/* The height that parts a patch's cells best into two groups (Otsu 1979). */
+static double parting_m(const double *z_m, int count)
+{
+    enum { bins = 256 };
+    double low = INFINITY, high = -INFINITY, many[bins] = {0}, all = 0, best = -1, at = 0;
+    for (int k = 0; k < count; k++) low = fmin(low, z_m[k]), high = fmax(high, z_m[k]);
+    const double step = fmax((high - low) / bins, 1e-6);
+    for (int k = 0; k < count; k++) many[(int)fmin((z_m[k] - low) / step, bins - 1)]++;
+    for (int k = 0; k < bins; k++) all += k * many[k];
+    for (double k = 0, below = 0, sum = 0; k < bins - 1; k++) {
+        below += many[(int)k], sum += k * many[(int)k];
+        const double above = count - below;
+        if (below == 0 || above == 0) continue;
+        const double apart = sum / below - (all - sum) / above, spread = below * above * apart * apart;
+        if (spread > best) best = spread, at = k;
+    }
+    return low + (at + 1) * step;
+}
+
+typedef struct Parting {
+    const SurfaceParts *parts;
+    double              at_m;
+} Parting;
+
+static bool same_side(const void *user, const Patches *p, int x, int y, int dx, int dy)
+{
+    const Parting *parting = user;
+    const size_t   here = (size_t)y * (size_t)p->nx + (size_t)x;
+    const size_t   there = (size_t)(y + dy) * (size_t)p->nx + (size_t)(x + dx);
+    return ((double)parting->parts->roof_m[here] > parting->at_m) ==
+           ((double)parting->parts->roof_m[there] > parting->at_m);
+}
+
+/* The cells of a patch that was cut into small pieces go to what they touch, until none is left. */
+static void give_away(Patches *p, size_t first, size_t last, int32_t small)
+{
+    for (bool again = true; again;) {
+        again = false;
+        for (size_t c = first; c <= last; c++) {
+            if (p->of[c] != small) continue;
+            const int     x = (int)(c % (size_t)p->nx);
+            const int32_t near[4] = {x > 0 ? p->of[c - 1] : 0, x + 1 < p->nx ? p->of[c + 1] : 0,
+                                     c >= (size_t)p->nx ? p->of[c - (size_t)p->nx] : 0,
+                                     c + (size_t)p->nx < (size_t)p->nx * (size_t)p->ny ? p->of[c + (size_t)p->nx] : 0};
+            for (int k = 0; k < 4 && p->of[c] == small; k++)
+                if (near[k] > p->before_cut) p->of[c] = near[k], again = true;
+        }
+    }
+}
+
+/* ---- roofs ---------------------------------------------------------------------------------------------- */
+
+/* The cells of a patch in the axes of its outline, from the middle of its box. */
+typedef struct Roof {
+    int     count;
+    double *u_m, *v_m, *z_m, *wall_m; /* along, across, height, distance from the nearest wall */
+    double  half_m[2];                /* of the box */
+} Roof;
+
+typedef struct RoofFit {
+    RoofShape shape;
+    double    eaves_m, ridge_m, turn_rad; /* turn: of ridge_rad from along_rad */
+    double    rms_m;
+} RoofFit;
+
+/* h = a + b x in least squares, and the rms of the rest. */
+static void fit_line(double *a, double *b, double *rms, int n, const double *x, const double *h)
+{
+    double sx = 0, sxx = 0, sh = 0, sxh = 0, shh = 0;
+    for (int k = 0; k < n; k++) sx += x[k], sxx += x[k] * x[k], sh += h[k], sxh += x[k] * h[k], shh += h[k] * h[k];
+    const double xx = sxx - sx * sx / n, xh = sxh - sx * sh / n;
+    *b = xx > 1e-9 ? xh / xx : 0;
+    *a = (sh - *b * sx) / n;
+    *rms = sqrt(fmax((shh - sh * sh / n - *b * xh) / n, 0));
+}
+
+/* A shape is taken when it fits better by a good part than the simpler ones before it. */
+static void consider(RoofFit *best, const RoofFit *other)
+{
+    static const double better = 0.8, least_rise_m = 0.5;
+    if (other->ridge_m - other->eaves_m >= least_rise_m && other->rms_m < better * best->rms_m) *best = *other;
+}
+
+static RoofFit fit_roof(const Roof *r, double *x)
+{
+    double  a, b, rms;
+    RoofFit best = {.shape = ROOF_FLAT};
+    for (int k = 0; k < r->count; k++) x[k] = 0;
+    fit_line(&a, &b, &rms, r->count, x, r->z_m);
+    best.eaves_m = best.ridge_m = a, best.rms_m = fmax(rms, 0.02);
+    for (int axis = 0; axis < 2; axis++) { /* gables: the ridge along that axis */
+        const double *off = axis ? r->u_m : r->v_m, half = r->half_m[1 - axis];
+        for (int k = 0; k < r->count; k++) x[k] = fabs(off[k]);
+        fit_line(&a, &b, &rms, r->count, x, r->z_m);
+        consider(&best, &(RoofFit){ROOF_GABLED, a + b * half, a, axis * 0.5 * pi_rad, rms});
+    }
+    for (int way = 0; way < 2; way++) {
+        const double *off = way ? r->v_m : r->u_m, half = r->half_m[way];
+        fit_line(&a, &b, &rms, r->count, off, r->z_m);
+        const RoofFit one = {ROOF_SKILLION, a - fabs(b) * half, a + fabs(b) * half,
+                             way * 0.5 * pi_rad + (b > 0 ? pi_rad : 0), rms};
+        consider(&best, &one);
+    }
+    double most_m = 0;
+    for (int k = 0; k < r->count; k++) most_m = fmax(most_m, r->wall_m[k]);
+    fit_line(&a, &b, &rms, r->count, r->wall_m, r->z_m);
+    const bool square = fmax(r->half_m[0], r->half_m[1]) < 1.15 * fmin(r->half_m[0], r->half_m[1]);
+    consider(&best, &(RoofFit){square ? ROOF_PYRAMIDAL : ROOF_HIPPED, a, a + b * most_m,
+                               r->half_m[1] > r->half_m[0] ? 0.5 * pi_rad : 0, rms});
+    return best;
+}
+
+/* ---- records -------------------------------------------------------------------------------------------- */
+
+static double wall_distance(const Outline *o, double x, double y)
+{
+    double least = INFINITY;
+    for (int k = 0; k < o->corners; k++) {
+        const double *a = o->corner[k], *b = o->corner[(k + 1) % o->corners];
+        const double  dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
+        const double  t = square > 0 ? clamp(((x - a[0]) * dx + (y - a[1]) * dy) / square, 0, 1) : 0;
+        least = fmin(least, hypot(x - a[0] - t * dx, y - a[1] - t * dy));
+    }
+    return least;
+}
+
+typedef struct Work {
+    Patches             patches;
+    const SurfaceParts *parts;
+    const SurfaceModel *model;
+    const SurfacePlace *place;
+    Outline             outline;
+    Roof                roof;
+    double             *x;
+    int                 least_cells, patch_count, patch_room;
+    Patch              *patch; /* to be done, in order */
+} Work;
+
+/* The patch's cells into the roof's arrays; the box of its outline. Returns the lowest bare ground. */
+static double gather(Work *w, const Patch *patch)
+{
+    const Outline *o = &w->outline;
+    Roof          *r = &w->roof;
+    const double   c = cos(o->along_rad), s = sin(o->along_rad), cell_m = w->model->cell_m;
+    double         low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, base_m = INFINITY;
+    for (int k = 0; k < o->corners; k++) {
+        const double uv[2] = {c * o->corner[k][0] + s * o->corner[k][1], c * o->corner[k][1] - s * o->corner[k][0]};
+        for (int i = 0; i < 2; i++) low[i] = fmin(low[i], uv[i]), high[i] = fmax(high[i], uv[i]);
+    }
+    for (int i = 0; i < 2; i++) r->half_m[i] = 0.5 * (high[i] - low[i]) * cell_m;
+    r->count = 0;
+    for (size_t at = patch->first; at <= patch->last; at++) {
+        if (w->patches.of[at] != patch->number) continue;
+        const double x = (double)(at % (size_t)w->patches.nx) + 0.5, y = (double)(at / (size_t)w->patches.nx) + 0.5;
+        r->u_m[r->count] = (c * x + s * y - 0.5 * (low[0] + high[0])) * cell_m;
+        r->v_m[r->count] = (c * y - s * x - 0.5 * (low[1] + high[1])) * cell_m;
+        r->wall_m[r->count] = wall_distance(o, x, y) * cell_m;
+        r->z_m[r->count++] = (double)w->parts->roof_m[at];
+        base_m = fmin(base_m, (double)w->parts->bare_m[at]);
+    }
+    return base_m;
+}
+
+/* Cuts a patch that no shape fits at the height that parts it best; the pieces go to the end of the list. Returns
+ * false where that leaves it whole. */
+static bool cut_patch(Work *w, const Patch *patch)
+{
+    Patches      *p = &w->patches;
+    const Parting parting = {w->parts, parting_m(w->roof.z_m, w->roof.count)};
+    const int     begun = w->patch_count;
+    int32_t       small = 0;
+    p->before_cut = p->count;
+    if (w->patch_count + patch->cells / w->least_cells + 1 > w->patch_room) return false;
+    for (size_t c = patch->first; c <= patch->last; c++) {
+        if (p->of[c] != patch->number) continue;
+        Patch piece = fill_patch(p, c, patch->number, ++p->count, same_side, &parting);
+        piece.cuts = patch->cuts + 1;
+        if (piece.cells >= w->least_cells) w->patch[w->patch_count++] = piece;
+        else small = -1, fill_patch(p, piece.first, piece.number, small, same_side, &parting);
+    }
+    if (small) give_away(p, patch->first, patch->last, small);
+    for (int k = begun; k < w->patch_count; k++) { /* what they were given may reach beyond their first and last cell */
+        w->patch[k].first = patch->last, w->patch[k].last = patch->first;
+        for (size_t c = patch->first; c <= patch->last; c++)
+            if (p->of[c] == w->patch[k].number)
+                w->patch[k].first = c < w->patch[k].first ? c : w->patch[k].first, w->patch[k].last = c;
+    }
+    return w->patch_count > begun;
+}
+
+static Status add_patch(Culture *culture, Work *w, const Patch *patch)
+{
+    static const double good_m = 0.5;
+    enum { most_cuts = 5 };
+    Outline *o = &w->outline;
+    if (!outline_of_cells(o, w->patches.of, w->patches.nx, w->patches.ny, patch->number, patch->first)) {
+        culture->left_out++;
+        return STATUS_OK;
+    }
+    const double  base_m = gather(w, patch);
+    const RoofFit fit = fit_roof(&w->roof, w->x);
+    if (fit.rms_m > good_m && patch->cells >= 2 * w->least_cells && patch->cuts < most_cuts && cut_patch(w, patch))
+        return STATUS_OK;
+    double direction[2];
+    for (int c = 0; c < 2; c++)
+        direction[c] = w->place->east_m[c] * cos(o->along_rad + fit.turn_rad) +
+                       w->place->north_m[c] * sin(o->along_rad + fit.turn_rad);
+    for (int k = 0; k < o->corners; k++) {
+        const double i = o->corner[k][0], j = o->corner[k][1];
+        for (int c = 0; c < 2; c++)
+            o->corner[k][c] = w->place->origin_m[c] + i * w->place->east_m[c] + j * w->place->north_m[c];
+    }
+    const double   area_m2 = w->roof.count * w->model->cell_m * w->model->cell_m;
+    const double   eaves_m = fmax(fit.eaves_m - base_m, 1);
+    const Building b = {.id = (uint64_t)(w->model->row * 0x9e3779b97f4a7c15u + w->model->column) ^ (patch->first + 1),
+                        .base_m = (float)base_m,
+                        .eaves_m = (float)eaves_m,
+                        .ridge_m = (float)fmax(fit.ridge_m - base_m, eaves_m),
+                        .ridge_rad = (float)atan2(direction[1], direction[0]),
+                        .use = area_m2 > 900  ? BUILDING_HALL
+                               : area_m2 < 30 ? BUILDING_SHED
+                               : eaves_m > 9  ? BUILDING_FLATS
+                                              : BUILDING_HOUSE,
+                        .roof = (uint8_t)fit.shape,
+                        .wall_fabric = area_m2 > 900 ? FABRIC_SHEET : FABRIC_RENDER,
+                        .roof_fabric = fit.shape == ROOF_FLAT ? FABRIC_FELT
+                                       : area_m2 > 900        ? FABRIC_SHEET
+                                                              : FABRIC_TILE,
+                        .levels = (uint8_t)clamp(rint(eaves_m / 3), 1, 100),
+                        .heated = area_m2 >= 30};
+    return culture_add_building(culture, &b, (const double(*)[2])o->corner, o->corners);
+}
+
+Status culture_add_surface(Culture *culture, const SurfaceParts *parts, const SurfaceModel *model,
+                           const SurfacePlace *place)
+{
+    const size_t n = (size_t)model->nx * (size_t)model->ny;
+    Work        *w = calloc(1, sizeof *w);
+    Status       status = STATUS_NO_MEMORY;
+    if (!w) return status;
+    *w = (Work){.patches = {.nx = model->nx, .ny = model->ny}, .parts = parts, .model = model, .place = place};
+    w->patches.of = calloc(n, sizeof(int32_t));
+    w->patches.todo = malloc(n * sizeof(int32_t));
+    w->roof.u_m = malloc(n * sizeof(double)), w->roof.v_m = malloc(n * sizeof(double));
+    w->roof.z_m = malloc(n * sizeof(double)), w->roof.wall_m = malloc(n * sizeof(double));
+    w->x = malloc(n * sizeof(double));
+    w->least_cells = (int)fmax(least_m2 / (model->cell_m * model->cell_m), 4);
+    w->patch_room = (int)(8 * n / (size_t)w->least_cells) + 8; /* each cell is in a few, one for each cut */
+    w->patch = malloc((size_t)w->patch_room * sizeof *w->patch);
+    if (w->patches.of && w->patches.todo && w->roof.u_m && w->roof.v_m && w->roof.z_m && w->roof.wall_m && w->x &&
+        w->patch)
+        status = STATUS_OK;
+    for (size_t c = 0; c < n && status == STATUS_OK; c++) w->patches.of[c] = isnan(roof_of(parts, c)) ? 0 : unseen;
+    for (size_t c = 0; c < n && status == STATUS_OK; c++) {
+        if (w->patches.of[c] != unseen) continue;
+        const Patch patch = fill_patch(&w->patches, c, unseen, ++w->patches.count, goes_on, parts);
+        if (patch.cells >= w->least_cells) w->patch[w->patch_count++] = patch;
+    }
+    for (int k = 0; k < w->patch_count && status == STATUS_OK; k++) {
+        const Patch patch = w->patch[k];
+        status = add_patch(culture, w, &patch);
+    }
+    free(w->patch);
+    free(w->patches.of), free(w->patches.todo), free(w->roof.u_m), free(w->roof.v_m), free(w->roof.z_m);
+    free(w->roof.wall_m), free(w->x), free(w);
+    return status;
+}
