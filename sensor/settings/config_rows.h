@@ -310,6 +310,12 @@ enum { config_paths_size = 4096 };
         "entities whose positions are inconsistent with it") \
     ROW(SWITCH, terrain., detail, true, "on|off", \
         "noise of the ground within each surface class (etc/ground_detail.csv); off: classes of one value") \
+    ROW(PATHS, terrain., buildings, "off", config_paths_size, \
+        "buildings, walls, fences, lines and what else people built; off: none; invented: on the plots and along the " \
+        "ways of synthetic terrain; else vector files (GeoJSON, Shapefile, GeoPackage), separated by commas, or a " \
+        "list") \
+    ROW(DOUBLE, terrain., clutter, 0, 0, 20, "", \
+        "civil vehicles, machines, animals, fires and rocks, by the densities of etc/clutter.csv times this; 0: none") \
     ROW(SWITCH, terrain., woods, true, "on|off", \
         "trees, bushes, hedges and low plants, by canopy layers, marked trunks or surface classes; off: bare " \
         "ground") \

@@ -9,6 +9,8 @@
 #include "sensor/settings/config.h"
 #include "pitviper_sha256.h"
 #include "terrain/ground/landscape.h"
+#include "entities/scenery/scenery.h"
+#include "terrain/culture/culture.h"
 #include "terrain/woods/woods.h"
 
 /* ---- host and aim ------------------------------------------------------------------------------------- */
@@ -127,7 +129,19 @@ Status choice_square(WoodsSquare *out, const Survey *survey, const Config *confi
 /* The landscape and the configuration must outlive it. With terrain.woods off: not on, nothing is done.
  * choice_woods_free after success and failure. */
 Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
-                    const Landscape *landscape, Pool *pool);
+                    const Landscape *landscape, const Culture *culture, Pool *pool);
 void   choice_woods_free(WoodsChoice *woods);
+
+/* ---- what people built, and clutter -------------------------------------------------------------------- */
+
+/* Of the same square: terrain.buildings, terrain.clutter. */
+typedef struct SceneryChoice {
+    Culture culture; /* indexed; empty: nothing is built */
+    Scenery scenery;
+} SceneryChoice;
+/* basis->evidence is not used. choice_scenery_free after success and failure. */
+Status choice_scenery(SceneryChoice *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
+                      const Landscape *landscape);
+void   choice_scenery_free(SceneryChoice *scenery);
 
 #endif

@@ -281,7 +281,7 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
 /* ---- all of it ----------------------------------------------------------------------------------- */
 
 Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
-                    const Landscape *landscape, Pool *pool)
+                    const Landscape *landscape, const Culture *culture, Pool *pool)
 {
     const Survey         *survey = basis->survey;
     const Config         *config = basis->config;
@@ -299,6 +299,7 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
                                 .far_half_m = square->own ? 0 : far_half_m,
                                 .store = stored ? config->terrain.store : NULL,
                                 .cache = real ? NULL : basis->cache, /* files may change and keep their names */
+                                .culture = culture->index ? culture : NULL,
                                 .follows = basis->follows};
     Paths paths = {.square = &out->config, .landscape = landscape};
     if (!real) add_known(&paths, &impacts, survey, catalog, e);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-static const char *const layer_name[MADE_LAYERS] = {"log",   "survey", "catalog", "ground",
+static const char *const layer_name[MADE_LAYERS] = {"log",   "survey", "catalog", "ground", "culture",
                                                     "woods", "models", "air",     "warmth"};
 
 /* Keys of the configuration that a layer may follow from (config_part). */
@@ -17,8 +17,9 @@ static const char *const layer_keys[MADE_LAYERS] = {
     [MADE_LOG] = "exercise.port exercise.causal node.site node.application",
     [MADE_SURVEY] = "",
     [MADE_CATALOG] = "models.",
-    [MADE_GROUND] = "seed terrain. -terrain.woods -terrain.detail",
-    [MADE_WOODS] = "seed terrain. -terrain.detail -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
+    [MADE_GROUND] = "seed terrain. -terrain.woods -terrain.detail -terrain.buildings -terrain.clutter",
+    [MADE_CULTURE] = "seed terrain.buildings terrain.clutter models.sag_m",
+    [MADE_WOODS] = "seed terrain. -terrain.detail -terrain.buildings -terrain.clutter -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
                    "-terrain.woods_low_m -terrain.woods_far_m -terrain.woods_far_mb",
     [MADE_MODELS] = "models. terrain.detail terrain.woods_leaves terrain.woods_level1_px terrain.woods_tables "
                     "terrain.woods_sway terrain.woods_far_m terrain.woods_far_mb",
@@ -52,6 +53,9 @@ static void take_down(MadeWorld *m, MadeLayer layer)
     case MADE_GROUND:
         landscape_destroy(&m->landscape);
         m->landscape = (Landscape){0};
+        break;
+    case MADE_CULTURE:
+        choice_scenery_free(&m->scenery);
         break;
     case MADE_WOODS:
         choice_woods_free(&m->woods);
@@ -280,26 +284,42 @@ static Status need_ground(MadeWorld *m, const MadeOf *of, const GroundEvidence *
                 choice_ground(&m->landscape, &m->contact, &m->said[MADE_GROUND], &basis, of->frame));
 }
 
-static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *evidence)
+static void add_square(Key *key, const WoodsSquare *square)
 {
-    char        key_text[sha256_text_size];
-    Config     *part = &m->part[MADE_WOODS];
-    WoodsSquare square;
-    Status      status = choice_square(&square, &m->survey, of->config, of->frame, of->plan);
-    if (status != STATUS_OK) return status;
-    Key key = key_of(part, MADE_WOODS, of->config);
-    add(&key, square.centre_m, sizeof square.centre_m);
-    add(&key, &square.half_width_m, sizeof square.half_width_m);
-    add(&key, &square.own, sizeof square.own);
-    key.good = key.good && *m->key[MADE_GROUND] && choice_evidence_hash(key.digest, evidence);
+    add(key, square->centre_m, sizeof square->centre_m);
+    add(key, &square->half_width_m, sizeof square->half_width_m);
+    add(key, &square->own, sizeof square->own);
+}
+
+static Status need_culture(MadeWorld *m, const MadeOf *of, const WoodsSquare *square)
+{
+    char    key_text[sha256_text_size];
+    Config *part = &m->part[MADE_CULTURE];
+    Key     key = key_of(part, MADE_CULTURE, of->config);
+    add_square(&key, square);
+    key.good = key.good && *m->key[MADE_GROUND];
+    if (is_there(key_text, m, MADE_CULTURE, &key)) return STATUS_OK;
+    const ChoiceBasis basis = {&m->survey, part, m->catalog, NULL, m->cache, NULL};
+    return done(m, MADE_CULTURE, key_text,
+                choice_scenery(&m->scenery, &m->said[MADE_CULTURE], &basis, square, &m->landscape));
+}
+
+static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *evidence, const WoodsSquare *square)
+{
+    char    key_text[sha256_text_size];
+    Config *part = &m->part[MADE_WOODS];
+    Key     key = key_of(part, MADE_WOODS, of->config);
+    add_square(&key, square);
+    key.good = key.good && *m->key[MADE_CULTURE] && choice_evidence_hash(key.digest, evidence);
     if (is_there(key_text, m, MADE_WOODS, &key)) return STATUS_OK;
-    char follows[3 * sha256_text_size]; /* settings, tables, frame and evidence by content; paths of vehicles are in
+    char follows[4 * sha256_text_size]; /* settings, tables, frame and evidence by content; paths of vehicles are in
                                            WoodsConfig */
-    snprintf(follows, sizeof follows, "%s%s%s", m->key[MADE_CATALOG], m->key[MADE_GROUND], key_text);
-    const bool        known = *m->key[MADE_CATALOG] && *m->key[MADE_GROUND] && *key_text;
+    snprintf(follows, sizeof follows, "%s%s%s%s", m->key[MADE_CATALOG], m->key[MADE_GROUND],
+             m->scenery.culture.index ? m->key[MADE_CULTURE] : "", key_text);
+    const bool        known = *m->key[MADE_CATALOG] && *m->key[MADE_CULTURE] && *key_text;
     const ChoiceBasis basis = {&m->survey, part, m->catalog, evidence, m->cache, known ? follows : NULL};
     return done(m, MADE_WOODS, key_text,
-                choice_woods(&m->woods, &m->said[MADE_WOODS], &basis, &square, &m->landscape, m->pool));
+                choice_woods(&m->woods, &m->said[MADE_WOODS], &basis, square, &m->landscape, &m->scenery.culture, m->pool));
 }
 
 static Status need_models(MadeWorld *m, const MadeOf *of)
@@ -314,6 +334,8 @@ static Status need_models(MadeWorld *m, const MadeOf *of)
     if (status == STATUS_OK) world_keep(&m->world, m->cache);
     if (status == STATUS_OK)
         status = frame_world_plant(&m->world, m->woods.on ? &m->woods.woods : NULL, part, of->isa, m->pool);
+    if (status == STATUS_OK && m->scenery.scenery.objects > 0)
+        status = world_scenery(&m->world, &m->scenery.scenery, of->isa, m->pool);
     return done(m, MADE_MODELS, key_text, status);
 }
 
@@ -352,15 +374,19 @@ static Status need_warmth(MadeWorld *m, const MadeOf *of)
 Status made_world(MadeWorld *m, Choices *choices, const MadeOf *of)
 {
     GroundEvidence *evidence = NULL;
+    WoodsSquare     square;
     Status          status = choice_evidence(&evidence, &m->survey, m->catalog, of->frame);
     if (status == STATUS_OK) status = need_ground(m, of, evidence);
     if (status == STATUS_OK) {
         say(choices, &m->said[MADE_GROUND]);
         choice_report_submerged(choices, &m->survey, evidence, of->plan);
-        status = need_woods(m, of, evidence);
+        status = choice_square(&square, &m->survey, of->config, of->frame, of->plan);
     }
+    if (status == STATUS_OK) status = need_culture(m, of, &square);
+    if (status == STATUS_OK) status = need_woods(m, of, evidence, &square);
     choice_evidence_free(evidence);
     if (status != STATUS_OK) return status;
+    say(choices, &m->said[MADE_CULTURE]);
     say(choices, &m->said[MADE_WOODS]);
     choice_shapes(choices, &m->survey, m->catalog);
     status = need_models(m, of);

@@ -18,7 +18,8 @@ typedef enum MadeLayer {
     MADE_SURVEY,  /* by log and exercise */
     MADE_CATALOG, /* by models.* and the tables */
     MADE_GROUND,  /* by terrain.*, seed, origin, evidence */
-    MADE_WOODS,   /* where plants stand: by the ground and their square */
+    MADE_CULTURE, /* what people built, and clutter: by the ground and their square */
+    MADE_WOODS,   /* where plants stand: by the ground, what is built, and their square */
     MADE_MODELS,  /* what rays meet: models, plants, materials */
     MADE_AIR,     /* atmosphere */
     MADE_WARM,    /* ground warmed up to exercise time 0 */
@@ -36,6 +37,7 @@ typedef struct MadeWorld {
     Catalog      *catalog;
     Landscape     landscape;
     GroundContact contact;
+    SceneryChoice scenery;
     WoodsChoice   woods;
     World         world;
     Config        part[MADE_LAYERS];                  /* the settings that a layer was made by */
