@@ -95,7 +95,9 @@ void woods_not_standing(uint8_t *stand, float *cover, float *density, const Wood
             const SurfaceClass class = woods_class_at(s, surface[k], x_m[k], y_m[k]);
             if (is_forest(class)) stand[k] = (uint8_t) class, density[k] = (float)woods_density(s, x_m[k], y_m[k]);
         }
-        if (stand[k] && woods_is_cleared(&s->clearings, x_m[k], y_m[k], 0, false)) stand[k] = SURFACE_NONE;
+        if (stand[k] &&
+            (woods_is_cleared(&s->clearings, x_m[k], y_m[k], 0, false) || woods_is_built_on(s, x_m[k], y_m[k], false)))
+            stand[k] = SURFACE_NONE;
     }
 }
 
@@ -188,7 +190,8 @@ Status woods_source_open(WoodsSource **out, const Landscape *landscape, const Wo
     WoodsSource *s = calloc(1, sizeof *s);
     Status       status = STATUS_OK;
     if (!s) return STATUS_NO_MEMORY;
-    s->seed = config->seed, s->landscape = landscape, s->synthetic = landscape_is_synthetic(landscape);
+    s->seed = config->seed, s->landscape = landscape, s->culture = config->culture;
+    s->synthetic = landscape_is_synthetic(landscape);
     double end[2];
     for (int k = 0; k < 2; k++) {
         s->centre_m[k] = config->centre_m[k];
@@ -274,6 +277,29 @@ static bool config_is_good(const WoodsConfig *c)
     return good;
 }
 
+/* All of it that woods_is_built_on asks about. */
+static void add_culture(CacheKey *key, const Culture *c)
+{
+    const int32_t count[] = {c->corners, c->buildings, c->lines, c->points};
+    cache_key_add(key, count, sizeof count);
+    cache_key_add(key, c->corner_m, (size_t)c->corners * sizeof *c->corner_m);
+    for (int n = 0; n < c->buildings; n++) {
+        const int32_t of[] = {c->building[n].first_corner, c->building[n].corners};
+        cache_key_add(key, of, sizeof of);
+    }
+    for (int n = 0; n < c->lines; n++) {
+        const CultureLine *l = &c->line[n];
+        const int32_t      of[] = {l->first_corner, l->corners, l->surface};
+        cache_key_add(key, of, sizeof of);
+        cache_key_add(key, &l->width_m, sizeof l->width_m);
+    }
+    for (int n = 0; n < c->points; n++) {
+        const CulturePoint *p = &c->point[n];
+        const double        of[] = {p->x_m, p->y_m, (double)p->size_m[0], (double)p->size_m[1]};
+        cache_key_add(key, of, sizeof of);
+    }
+}
+
 CacheKey woods_key(const char *what, const WoodsConfig *c)
 {
     CacheKey       key = cache_key(what);
@@ -285,6 +311,7 @@ CacheKey woods_key(const char *what, const WoodsConfig *c)
     cache_key_add(&key, c->path, (size_t)c->path_count * sizeof *c->path);
     cache_key_add(&key, c->place, (size_t)c->place_count * sizeof *c->place);
     cache_key_add(&key, c->follows, strlen(c->follows));
+    if (c->culture) add_culture(&key, c->culture);
     return key;
 }
 

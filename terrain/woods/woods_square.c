@@ -91,6 +91,17 @@ void woods_clearings_free(WoodsClearings *c)
     memset(c, 0, sizeof *c);
 }
 
+/* ---- what is built ------------------------------------------------------------------------------ */
+
+bool woods_is_built_on(const WoodsSource *s, double x_m, double y_m, bool low)
+{
+    static const double wall_m = 0.1; /* grass grows up to walls */
+    if (!s->culture) return false;
+    if (!low) return culture_is_near(s->culture, x_m, y_m, woods_built_m);
+    return culture_building_at(s->culture, x_m, y_m, wall_m) >= 0 ||
+           culture_surface_at(s->culture, x_m, y_m) != SURFACE_NONE;
+}
+
 /* ---- surfaces --------------------------------------------------------------------------------- */
 
 static bool surface_bears(uint8_t surface)
@@ -110,7 +121,8 @@ void woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *
         const int n = count - first < some ? count - first : some;
         for (int k = 0; k < n; k++) {
             WayPlace way;
-            bears[first + k] = !woods_is_cleared(&s->clearings, x_m[first + k], y_m[first + k], room_m, low);
+            bears[first + k] = !woods_is_cleared(&s->clearings, x_m[first + k], y_m[first + k], room_m, low) &&
+                               !woods_is_built_on(s, x_m[first + k], y_m[first + k], low);
             if (!landscape_way(&way, s->landscape, x_m[first + k], y_m[first + k])) continue;
             bears[first + k] &= fabs(way.across_m) > way.half_m + way_room_m + room_m;
         }
@@ -245,7 +257,7 @@ static void add_crowns(SquarePlants *out, const WoodsSource *s, int i, int j)
         uint8_t        surface;
         landscape_surfaces(&surface, s->landscape, 1, &x_m, &y_m);
         if (surface == SURFACE_WATER || surface == SURFACE_ROAD || !(crown->height_m > 0.5f)) continue;
-        if (woods_is_cleared(&s->clearings, x_m, y_m, 0, false)) continue;
+        if (woods_is_cleared(&s->clearings, x_m, y_m, 0, false) || woods_is_built_on(s, x_m, y_m, false)) continue;
         const PlantKind kind = crown->height_m < 3 ? PLANT_BUSH : kind_at(s, shares_of(s, surface), x_m, y_m, hash);
         const double    width = (double)crown->radius_m / ((double)crown->height_m * plant_crown_share(kind));
         woods_add_plant(out, s, woods_draw_plant(hash, kind, (double)crown->height_m, clamp(width, 0.4, 1.99)), x_m,
