@@ -1,0 +1,201 @@
+/* entities/scenery/scenery_buildings.c: a culture's records sorted into cells, each made a mesh and an object. */
+#include "entities/scenery/scenery_buildings_private.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { parts_enough = 60000, triangles_enough = 4000000 }; /* a cell with more is several models */
+
+typedef enum ItemKind { ITEM_BUILDING, ITEM_PIECE, ITEM_POINT } ItemKind;
+
+/* A record, or a piece of a line, and the cell that it stands in. */
+typedef struct Item {
+    int32_t i, j;
+    int32_t kind, number, piece;
+} Item;
+
+typedef struct Items {
+    int   count, room;
+    Item *item;
+} Items;
+
+static int item_order(const void *a, const void *b)
+{
+    const int32_t *p = (const int32_t *)a, *q = (const int32_t *)b; /* by cell, then by record */
+    for (int k = 0; k < 5; k++)
+        if (p[k] != q[k]) return p[k] < q[k] ? -1 : 1;
+    return 0;
+}
+
+static Status add_item(Items *items, double x_m, double y_m, int kind, int number, int piece)
+{
+    if (items->count == items->room) {
+        const int wanted = items->room ? 2 * items->room : 256;
+        Item     *larger = realloc(items->item, (size_t)wanted * sizeof *larger);
+        if (!larger) return STATUS_NO_MEMORY;
+        items->item = larger, items->room = wanted;
+    }
+    const double i = floor(x_m / scenery_cell_m), j = floor(y_m / scenery_cell_m);
+    items->item[items->count++] =
+        (Item){(int32_t)clamp(i, -2e9, 2e9), (int32_t)clamp(j, -2e9, 2e9), kind, number, piece};
+    return STATUS_OK;
+}
+
+static Status list_items(Items *items, const Culture *c)
+{
+    Status status = STATUS_OK;
+    for (int n = 0; n < c->buildings && status == STATUS_OK; n++) {
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (int k = 0; k < c->building[n].corners; k++)
+            for (int a = 0; a < 2; a++) {
+                const double m = c->corner_m[c->building[n].first_corner + k][a];
+                low[a] = fmin(low[a], m), high[a] = fmax(high[a], m);
+            }
+        status = add_item(items, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), ITEM_BUILDING, n, 0);
+    }
+    qsort(items->item, (size_t)items->count, sizeof *items->item, item_order);
+    return status;
+}
+
+/* ---- a cell --------------------------------------------------------------------------------------- */
+
+typedef struct CellsMade {
+    Model         *model;
+    SceneryObject *object;
+    uint64_t     **id;
+    int            count, room;
+} CellsMade;
+
+static void free_made(CellsMade *made)
+{
+    for (int k = 0; k < made->count; k++) model_destroy(&made->model[k]), free(made->id[k]);
+    free(made->model), free(made->object), free(made->id);
+}
+
+static Status put_model(CellsMade *made, CellMesh *cell, const Item *at, const double origin[3], int number)
+{
+    if (cell->status == STATUS_OK && cell->model.part_count == 0) {
+        cell_mesh_free(cell);
+        return STATUS_OK;
+    }
+    if (made->count == made->room) {
+        const int    wanted = made->room ? 2 * made->room : 16;
+        const size_t size = (size_t)wanted;
+        Model       *model = realloc(made->model, size * sizeof *model);
+        if (model) made->model = model;
+        SceneryObject *object = realloc(made->object, size * sizeof *object);
+        if (object) made->object = object;
+        uint64_t **id = realloc(made->id, size * sizeof *id);
+        if (id) made->id = id;
+        if (!model || !object || !id) cell->status = STATUS_NO_MEMORY;
+        else made->room = wanted;
+    }
+    char name[model_name_size];
+    snprintf(name, sizeof name, "buildings_%d_%d", at->i, at->j);
+    if (cell->status != STATUS_OK) {
+        const Status status = cell->status;
+        cell_mesh_free(cell);
+        return status;
+    }
+    const Status status = cell_take(&made->model[made->count], &made->id[made->count], cell, name);
+    if (status != STATUS_OK) return status;
+    /* body x north, y east, z down */
+    made->object[made->count] = (SceneryObject){
+        .id = (uint64_t)(uint32_t)at->i << 32 ^ (uint64_t)(uint32_t)at->j ^ (uint64_t)number << 60,
+        .kind = SCENERY_BUILDINGS,
+        .state = -1,
+        .p_enu = {origin[0], origin[1], origin[2]},
+        .r_enu_from_body = {0, 1, 0, 1, 0, 0, 0, 0, -1},
+    };
+    made->count++;
+    return STATUS_OK;
+}
+
+static double base_of(const Culture *c, const Item *item, double otherwise_m)
+{
+    return item->kind == ITEM_BUILDING ? (double)c->building[item->number].base_m : otherwise_m;
+}
+
+/* Items first .. first + count - 1 are of one cell. */
+static Status make_cell(CellsMade *made, const Culture *c, const Item *item, int count, SceneryGround *ground_m,
+                        void *user)
+{
+    double origin[3] = {(item->i + 0.5) * scenery_cell_m, (item->j + 0.5) * scenery_cell_m, INFINITY};
+    for (int k = 0; k < count; k++) origin[2] = fmin(origin[2], base_of(c, &item[k], INFINITY));
+    if (!isfinite(origin[2])) origin[2] = 0;
+    CellMesh cell = {0};
+    Status   status = STATUS_OK;
+    int      number = 0;
+    for (int k = 0; k < count && status == STATUS_OK; k++) {
+        if (item[k].kind == ITEM_BUILDING)
+            building_make(&cell, c, &c->building[item[k].number], origin, ground_m, user);
+        if (cell.model.part_count > parts_enough || cell.model.triangle_count > triangles_enough || k + 1 == count ||
+            cell.status != STATUS_OK)
+            status = put_model(made, &cell, item, origin, number++);
+    }
+    cell_mesh_free(&cell);
+    return status;
+}
+
+/* ---- into the scenery ----------------------------------------------------------------------------- */
+
+static int parts_known(const Scenery *s)
+{
+    int parts = 0;
+    for (int k = 0; k < s->models; k++)
+        if (s->part_first && s->part_first[k] >= 0) {
+            const int end = s->part_first[k] + s->model[k].part_count;
+            parts = end > parts ? end : parts;
+        }
+    return parts;
+}
+
+static bool widen(void *array, size_t count, size_t size)
+{
+    void **const data = array;
+    void        *larger = realloc(*data, (count ? count : 1) * size);
+    if (larger) *data = larger;
+    return larger;
+}
+
+static Status append(Scenery *s, CellsMade *made)
+{
+    const int parts = parts_known(s);
+    size_t    all = (size_t)parts;
+    for (int k = 0; k < made->count; k++) all += (size_t)made->model[k].part_count;
+    const bool had_first = s->part_first;
+    if (all > INT32_MAX || !widen(&s->model, (size_t)(s->models + made->count), sizeof *s->model) ||
+        !widen(&s->object, (size_t)(s->objects + made->count), sizeof *s->object) ||
+        !widen(&s->part_of, all, sizeof *s->part_of) ||
+        !widen(&s->part_first, (size_t)(s->models + made->count), sizeof *s->part_first))
+        return STATUS_NO_MEMORY;
+    for (int k = 0; k < s->models && !had_first; k++) s->part_first[k] = -1;
+    int at = parts;
+    for (int k = 0; k < made->count; k++) {
+        const int count = made->model[k].part_count;
+        s->part_first[s->models] = at;
+        memcpy(s->part_of + at, made->id[k], (size_t)count * sizeof *s->part_of);
+        at += count;
+        s->object[s->objects] = made->object[k];
+        s->object[s->objects++].model = s->models;
+        s->model[s->models++] = made->model[k];
+        made->model[k] = (Model){0};
+    }
+    return STATUS_OK;
+}
+
+Status scenery_add_buildings(Scenery *scenery, const Culture *culture, SceneryGround *ground_m, void *user)
+{
+    Items     items = {0};
+    CellsMade made = {0};
+    Status    status = list_items(&items, culture);
+    for (int k = 0, next; k < items.count && status == STATUS_OK; k = next) {
+        for (next = k + 1; next < items.count; next++)
+            if (items.item[next].i != items.item[k].i || items.item[next].j != items.item[k].j) break;
+        status = make_cell(&made, culture, items.item + k, next - k, ground_m, user);
+    }
+    if (status == STATUS_OK && made.count > 0) status = append(scenery, &made);
+    free_made(&made);
+    free(items.item);
+    return status;
+}

@@ -1,0 +1,29 @@
+/* entities/scenery/scenery_buildings.h: the buildings and works of a culture, as meshes.
+ *
+ * Ground is cut into square cells; what stands in one (a building by the middle of its outline, a point by its place, a
+ * line piece by piece) is one Model and one SceneryObject of kind SCENERY_BUILDINGS, with state -1. Model axes: x
+ * north, y east, z down, origin at the middle of the cell at the lowest base in it; the object's pose turns them into
+ * ENU. A cell whose parts or triangles would be too many for one model is several.
+ *
+ * Parts: of a record each name and material once; Scenery.part_of names the record's id. Names, materials and roles:
+ * ModelPart, etc/materials.csv, BRIEF of parts in etc/reference/terrain.md ("Buildings").
+ *
+ * Closed: all parts of a record together are closed shells (every directed edge has its reverse): panes and doors close
+ * the openings of walls, so a single part need not be closed; model_check holds, model_validate does not. */
+#ifndef ENTITIES_SCENERY_SCENERY_BUILDINGS_H
+#define ENTITIES_SCENERY_SCENERY_BUILDINGS_H
+
+#include "entities/scenery/scenery.h"
+#include "terrain/culture/culture.h"
+
+static const double scenery_cell_m = 128;
+static const double scenery_overhang_m = 0.4; /* of roofs, across the wall; less where a corner is sharp */
+
+/* ENU z of the ground at a place; NaN: not known there. */
+typedef double SceneryGround(void *user, double x_m, double y_m);
+
+/* Appends the cells of all buildings, lines and points of a culture. The same records give the same bits. ground_m:
+ * NULL: as high as the bases. STATUS_NO_MEMORY: the scenery holds what it held. */
+Status scenery_add_buildings(Scenery *scenery, const Culture *culture, SceneryGround *ground_m, void *user);
+
+#endif

@@ -1,0 +1,109 @@
+/* entities/scenery/scenery_buildings_private.h: what the files that make buildings and works share.
+ *
+ * Places are in a cell's local ENU (east, north, up from its origin), m, double; cell_take turns them into the model's
+ * axes. */
+#ifndef ENTITIES_SCENERY_SCENERY_BUILDINGS_PRIVATE_H
+#define ENTITIES_SCENERY_SCENERY_BUILDINGS_PRIVATE_H
+
+#include "entities/scenery/scenery_buildings.h"
+
+/* ---- outlines (scenery_outline.c) ----------------------------------------------------------------- */
+
+double outline_area_m2(const double (*p)[2], int n);
+/* Cuts a simple counter-clockwise polygon into n - 2 triangles (indices, counter-clockwise), by ears, the least
+ * slender first. false: no memory, or a triangle had to be turned over (a polygon that crosses itself); it still has n
+ * - 2 triangles then, unless memory is out. O(n^2) for usual outlines. */
+bool outline_triangulate(int (*triangle)[3], const double (*p)[2], int n);
+/* Moves every edge outwards by out_m (negative: inwards), corners mitred. false: the result would cross itself or lose
+ * an edge. */
+bool outline_offset(double (*to)[2], const double (*p)[2], int n, double out_m);
+/* The longest mitre of a corner, in units of the distance that edges move. */
+double outline_longest_mitre(const double (*p)[2], int n);
+
+/* ---- roofs' plans (scenery_skeleton.c) ------------------------------------------------------------ */
+
+enum { roof_plan_corners = 256 };
+
+/* The straight skeleton of an outline: where equal slopes from all eaves meet. */
+typedef struct RoofPlan {
+    int nodes, faces, corners;
+    double (*node)[3]; /* x, y, and time: distance from the eaves whose slopes meet there; the first are the corners */
+    int   *first;      /* [faces + 1] of index */
+    int   *index;      /* nodes of faces, counter-clockwise from above (of gables: from outside) */
+    int   *edge;       /* [faces]: from which corner on the edge goes that the face rises from; -1: a flat top */
+    double most_time_m;
+} RoofPlan;
+
+/* gable [n]: edges that stand still, whose face is upright; NULL: none. No two neighbours may be gables. false: no plan
+ * of positive faces was found (or too many corners); out is empty. status: STATUS_NO_MEMORY when memory was out. */
+bool roof_plan_make(RoofPlan *out, Status *status, const double (*p)[2], int n, const bool *gable);
+void roof_plan_free(RoofPlan *plan);
+
+/* ---- a cell's mesh (scenery_cell.c) --------------------------------------------------------------- */
+
+enum { cell_slots = 24 };
+
+typedef struct CellMesh {
+    Model  model;
+    int    vertex_room, triangle_room, part_room, id_room, pending_room, pendings;
+    Status status;
+    uint64_t *id; /* [model.part_count]: of its record */
+    /* of the record being made: its parts and their triangles, in any order */
+    uint64_t  record;
+    int       slots;
+    ModelPart slot[cell_slots];
+    uint32_t (*pending)[4]; /* three vertices and the slot */
+} CellMesh;
+
+void cell_begin(CellMesh *cell, uint64_t id);
+/* The slot of a part of this name, material and role in the record being made. */
+int cell_part(CellMesh *cell, const char *name, const char *material, HeatRole role);
+void cell_end(CellMesh *cell);
+uint32_t cell_vertex(CellMesh *cell, const double p[3], const double n[3]);
+void     cell_triangle(CellMesh *cell, int slot, uint32_t a, uint32_t b, uint32_t c);
+/* A flat polygon, counter-clockwise seen from outside; nothing when it has no area. */
+void cell_face(CellMesh *cell, int slot, const double (*p)[3], int n);
+/* An upright prism, closed: outline n <= 64 of the local plane, from z0 to z1. */
+void cell_prism(CellMesh *cell, int slot, const double (*p)[2], int n, double z0, double z1);
+/* A box: middle of its base, half sizes along u and across (unit, horizontal), from z0 to z1. */
+void cell_box(CellMesh *cell, int slot, const double middle[2], const double along[2], double half_along,
+              double half_across, double z0, double z1);
+void cell_mesh_free(CellMesh *cell);
+/* Makes the model: parts in the order of their records. */
+Status cell_take(Model *out, uint64_t **id, CellMesh *cell, const char *name);
+
+/* ---- what things are made of (scenery_fabrics.c) -------------------------------------------------- */
+
+/* Rows of etc/materials.csv, varied by id. */
+const char *fabric_material(int fabric, uint64_t id);
+const char *door_material(uint64_t id);
+const char *frame_material(uint64_t id);
+/* A number of 0 .. 1 that follows from an id and a stream. */
+double record_random(uint64_t id, uint32_t stream);
+
+/* ---- buildings ------------------------------------------------------------------------------------ */
+
+/* A building being made. */
+typedef struct BuildingWork {
+    const Building *b;
+    CellMesh       *cell;
+    int             n;
+    double (*p)[2]; /* outline in the cell's plane */
+    double base_m;  /* in the cell's height */
+    double top_m;   /* of the walls' upright part over the base: what roofs leave */
+    double skirt_m; /* how far walls go into the ground */
+    int    wall, roof;
+    SceneryGround *ground_m;   /* in ENU */
+    void          *user;
+    double         origin[3]; /* of the cell in ENU */
+    double         ridge[2][2], ridge_top_m; /* the highest line of the roof, for chimneys */
+} BuildingWork;
+
+/* Adds the roof and what of the walls is over top_m, with its lid, and the floor; sets top_m. */
+void building_roof(BuildingWork *w);
+/* Adds the walls to top_m, with windows and doors. */
+void building_walls(BuildingWork *w);
+void building_make(CellMesh *cell, const Culture *culture, const Building *b, const double origin[3],
+                   SceneryGround *ground_m, void *user);
+
+#endif
