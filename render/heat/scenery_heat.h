@@ -36,7 +36,7 @@ typedef struct SceneryTemps SceneryTemps;
 /* Where the wind blows to at a time, at the height of low things, m/s. */
 typedef void SceneryWind(double wind_enu_mps[3], double unix_s, const void *user);
 
-/* All that is pointed to outlives the heat, but for constructions, which is copied, and the ground's heat. */
+/* All that is pointed to outlives the heat, but for ground and constructions, which are copied. */
 typedef struct SceneryHeatConfig {
     HeatConfig           heat;     /* as the ground's; facets: of walls; weather, user, pool, cache */
     double               east_rad; /* longitude of the place: rooms are heated by its sun's mean time */
