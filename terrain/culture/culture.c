@@ -31,10 +31,12 @@ static Status grow_records(Culture *c, void *array, int kind, size_t size, int c
     return grow(array, &c->room[kind], size, count, 1, culture_most_records);
 }
 
-static bool are_finite(const double (*corner_m)[2], int corners)
+static bool is_place(double x_m, double y_m) { return fabs(x_m) <= culture_farthest_m && fabs(y_m) <= culture_farthest_m; }
+
+static bool are_places(const double (*corner_m)[2], int corners)
 {
     for (int k = 0; k < corners; k++)
-        if (!isfinite(corner_m[k][0]) || !isfinite(corner_m[k][1])) return false;
+        if (!is_place(corner_m[k][0], corner_m[k][1])) return false;
     return true;
 }
 
@@ -62,27 +64,60 @@ static bool they_meet(const double a[2], const double b[2], const double c[2], c
     return true;
 }
 
+/* An edge of an outline, from corner `first` on, and what it spans along the outline's longer side. */
+typedef struct Edge {
+    double low_m, high_m;
+    int    first;
+} Edge;
+
+static int lower_first(const void *a, const void *b)
+{
+    const Edge *p = a, *q = b;
+    return p->low_m < q->low_m ? -1 : p->low_m > q->low_m ? 1 : p->first - q->first;
+}
+
+/* Whether two edges that are not neighbours meet. Edges are compared with those alone whose spans overlap, up to 256
+ * times a corner: 10 ms for 4096 corners, whatever they are. An outline so tangled that this is not enough, which takes
+ * more than 512 corners, counts as one that crosses itself. */
 static bool crosses_itself(const double (*p)[2], int n)
 {
+    static const long tests_a_corner = 256;
+    Edge              edge[culture_outline_most];
+    double            low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int k = 0; k < n; k++)
+        for (int c = 0; c < 2; c++) low[c] = fmin(low[c], p[k][c]), high[c] = fmax(high[c], p[k][c]);
+    const int along = high[1] - low[1] > high[0] - low[0];
+    for (int k = 0; k < n; k++) {
+        const double a = p[k][along], b = p[(k + 1) % n][along];
+        edge[k] = (Edge){fmin(a, b), fmax(a, b), k};
+    }
+    qsort(edge, (size_t)n, sizeof *edge, lower_first);
+    long left = tests_a_corner * n;
     for (int i = 0; i < n; i++)
-        for (int k = i + 2; k < n; k++)
-            if ((i > 0 || k + 1 < n) && they_meet(p[i], p[i + 1], p[k], p[(k + 1) % n])) return true;
+        for (int k = i + 1; k < n && edge[k].low_m <= edge[i].high_m; k++) {
+            const int a = edge[i].first, b = edge[k].first, apart = a > b ? a - b : b - a;
+            if (left-- == 0) return true;
+            if (apart > 1 && apart < n - 1 && they_meet(p[a], p[(a + 1) % n], p[b], p[(b + 1) % n])) return true;
+        }
     return false;
 }
 
-/* Drops corners that repeat, or lie on the line between their neighbours within a millimetre. Returns how many are
- * left. */
+/* Drops corners that repeat, that lie on the line between their neighbours within a millimetre, or from which the
+ * outline goes back the way it came. Returns how many are left. What dropping a corner lays bare is looked at again,
+ * eight times at most. */
 static int thin_out(double (*p)[2], int n)
 {
+    enum { most_rounds = 8 };
     static const double nearest_m = 1e-3;
-    for (bool dropped = true; dropped && n >= 3;) {
+    bool                dropped = true;
+    for (int round = 0; dropped && n >= 3 && round < most_rounds; round++) {
         int kept = 0;
         for (int k = 0; k < n; k++) {
             const double *before = kept > 0 ? p[kept - 1] : p[n - 1], *after = p[(k + 1) % n];
             const double  length_m = hypot(after[0] - before[0], after[1] - before[1]);
             const bool    repeats = hypot(p[k][0] - before[0], p[k][1] - before[1]) < nearest_m;
-            const bool    straight = length_m > nearest_m && fabs(turn_m2(before, p[k], after)) < nearest_m * length_m;
-            if (repeats || straight) continue;
+            const bool    straight = fabs(turn_m2(before, p[k], after)) < nearest_m * length_m;
+            if (repeats || straight || length_m < nearest_m) continue;
             p[kept][0] = p[k][0], p[kept][1] = p[k][1], kept++;
         }
         dropped = kept < n;
@@ -91,12 +126,17 @@ static int thin_out(double (*p)[2], int n)
     return n;
 }
 
+/* Whether a height over the ground is one that anything built has. */
+static bool is_height(float m) { return m > 0 && m <= culture_highest_m; }
+
 Status culture_add_building(Culture *c, const Building *building, const double (*corner_m)[2], int corners)
 {
     static const double least_m2 = 1;
-    if (corners < 3 || corners > culture_outline_most || !are_finite(corner_m, corners) ||
-        !isfinite(building->base_m) || !(building->eaves_m > 0) || !(building->ridge_m >= building->eaves_m) ||
-        !isfinite(building->ridge_m) || !isfinite(building->ridge_rad)) {
+    if (corners < 3 || corners > culture_outline_most || !are_places(corner_m, corners) ||
+        !isfinite(building->base_m) || !is_height(building->eaves_m) || !is_height(building->ridge_m) ||
+        building->ridge_m < building->eaves_m || !isfinite(building->ridge_rad) || building->use >= BUILDING_USES ||
+        building->roof >= ROOF_SHAPES || building->wall_fabric >= FABRICS || building->roof_fabric >= FABRICS ||
+        building->damage > 3) {
         c->left_out++;
         return STATUS_OK;
     }
@@ -125,9 +165,9 @@ Status culture_add_building(Culture *c, const Building *building, const double (
 
 Status culture_add_line(Culture *c, const CultureLine *line, const double (*corner_m)[2], int corners)
 {
-    if (corners < 2 || corners > culture_outline_most || !are_finite(corner_m, corners) || !(line->width_m >= 0) ||
-        !(line->height_m >= 0) || !isfinite(line->width_m) || !isfinite(line->height_m) ||
-        line->kind >= CULTURE_LINE_KINDS) {
+    if (corners < 2 || corners > culture_outline_most || !are_places(corner_m, corners) ||
+        !(line->width_m >= 0 && line->width_m <= culture_widest_m) ||
+        !(line->height_m >= 0 && line->height_m <= culture_highest_m) || line->kind >= CULTURE_LINE_KINDS) {
         c->left_out++;
         return STATUS_OK;
     }
@@ -145,8 +185,9 @@ Status culture_add_line(Culture *c, const CultureLine *line, const double (*corn
 Status culture_add_point(Culture *c, const CulturePoint *point)
 {
     const float *s = point->size_m;
-    if (!isfinite(point->x_m) || !isfinite(point->y_m) || !isfinite(point->base_m) || !isfinite(point->heading_rad) ||
-        !(s[0] > 0 && s[1] > 0 && s[2] > 0) || !isfinite(s[0] + s[1] + s[2]) || point->kind >= CULTURE_POINT_KINDS) {
+    if (!is_place(point->x_m, point->y_m) || !isfinite(point->base_m) || !isfinite(point->heading_rad) ||
+        !(s[0] > 0 && s[0] <= culture_widest_m && s[1] > 0 && s[1] <= culture_widest_m) || !is_height(s[2]) ||
+        point->kind >= CULTURE_POINT_KINDS) {
         c->left_out++;
         return STATUS_OK;
     }
@@ -157,11 +198,48 @@ Status culture_add_point(Culture *c, const CulturePoint *point)
 
 Status culture_add_tree(Culture *c, const CultureTree *tree)
 {
-    if (!isfinite(tree->x_m) || !isfinite(tree->y_m) || !(tree->height_m >= 0) || !isfinite(tree->height_m)) {
+    if (!is_place(tree->x_m, tree->y_m) || !(tree->height_m >= 0 && tree->height_m <= 200)) {
         c->left_out++;
         return STATUS_OK;
     }
     const Status status = grow_records(c, &c->tree, 4, sizeof *c->tree, c->trees);
     if (status == STATUS_OK) c->tree[c->trees++] = *tree;
     return status;
+}
+
+/* ---- keys --------------------------------------------------------------------------------------- */
+
+void culture_key_add(CacheKey *key, const Culture *c)
+{
+    if (!c) return;
+    const int32_t count[] = {c->corners, c->buildings, c->lines, c->points, c->trees};
+    _Static_assert(sizeof(Building) == 40, "no padding");
+    cache_key_add(key, count, sizeof count);
+    cache_key_add(key, c->corner_m, (size_t)c->corners * sizeof *c->corner_m);
+    cache_key_add(key, c->building, (size_t)c->buildings * sizeof *c->building);
+    for (int n = 0; n < c->lines; n++) {
+        const CultureLine *l = &c->line[n];
+        const int32_t      whole[] = {l->first_corner, l->corners, l->kind, l->surface};
+        const float        number[] = {l->width_m, l->height_m};
+        cache_key_add(key, &l->id, sizeof l->id);
+        cache_key_add(key, whole, sizeof whole);
+        cache_key_add(key, number, sizeof number);
+    }
+    for (int n = 0; n < c->points; n++) {
+        const CulturePoint *p = &c->point[n];
+        const double number[] = {p->x_m, p->y_m, (double)p->base_m, (double)p->heading_rad, (double)p->size_m[0],
+                                 (double)p->size_m[1], (double)p->size_m[2]};
+        const int32_t kind = p->kind;
+        cache_key_add(key, &p->id, sizeof p->id);
+        cache_key_add(key, number, sizeof number);
+        cache_key_add(key, &kind, sizeof kind);
+    }
+    for (int n = 0; n < c->trees; n++) {
+        const CultureTree *t = &c->tree[n];
+        const double       number[] = {t->x_m, t->y_m, (double)t->height_m};
+        const int32_t      whole[] = {t->kind, t->marked};
+        cache_key_add(key, &t->id, sizeof t->id);
+        cache_key_add(key, number, sizeof number);
+        cache_key_add(key, whole, sizeof whole);
+    }
 }

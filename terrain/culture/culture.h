@@ -4,7 +4,7 @@
 #ifndef TERRAIN_CULTURE_CULTURE_H
 #define TERRAIN_CULTURE_CULTURE_H
 
-#include "pitviper.h"
+#include "pitviper_cache.h"
 
 typedef enum BuildingUse {
     BUILDING_HOUSE,  /* lived in: windows, door, chimney */
@@ -125,11 +125,13 @@ enum {
     culture_most_records = 1 << 21, /* of each kind */
     culture_outline_most = 4096,    /* corners of one outline or line */
 };
+static const double culture_farthest_m = 1e6;                       /* from the origin, along each axis */
+static const float  culture_highest_m = 850, culture_widest_m = 1000; /* of anything; of lines and points */
 
 void culture_free(Culture *culture); /* accepts zeroes */
 /* Append a record with its corners; first_corner and corners are set. An outline is turned counter-clockwise, repeated
  * and collinear corners are dropped; one that crosses itself, has no area (under 1 m2) or is not finite is left out and
- * counted. STATUS_NO_MEMORY, or beyond the limits above: STATUS_BAD_VALUE, logged. */
+ * counted, as is any record with a number outside the ranges above. STATUS_NO_MEMORY, or beyond the limits above: STATUS_BAD_VALUE, logged. */
 Status culture_add_building(Culture *culture, const Building *building, const double (*corner_m)[2], int corners);
 Status culture_add_line(Culture *culture, const CultureLine *line, const double (*corner_m)[2], int corners);
 Status culture_add_point(Culture *culture, const CulturePoint *point);
@@ -137,6 +139,8 @@ Status culture_add_tree(Culture *culture, const CultureTree *tree);
 
 /* ---- look-ups by place, after culture_index ----------------------------------------------------- */
 
+/* Some 12 octets a cell that a record reaches into; its cells grow until that is at most 100 MB and 96 octets for each
+ * building, point and piece of a line between two corners. */
 Status culture_index(Culture *culture);
 /* The building whose outline, grown by more_m, holds a place; -1: none. Of several the first. Thread-safe. */
 int culture_building_at(const Culture *culture, double x_m, double y_m, double more_m);
@@ -145,5 +149,14 @@ int culture_building_at(const Culture *culture, double x_m, double y_m, double m
 bool culture_is_near(const Culture *culture, double x_m, double y_m, double more_m);
 /* The surface that the last line with one over a place has; SURFACE_NONE: none. */
 int culture_surface_at(const Culture *culture, double x_m, double y_m);
+/* Whether a line with a surface reaches within more_m of a place. */
+bool culture_surface_near(const Culture *culture, double x_m, double y_m, double more_m);
+/* The first line of a kind that reaches within more_m of a place; -1: none. */
+int culture_line_near(const Culture *culture, CultureLineKind kind, double x_m, double y_m, double more_m);
+
+/* ---- what follows from it ------------------------------------------------------------------------ */
+
+/* Adds every record to the key of something that follows from them. culture may be NULL: nothing is added. */
+void culture_key_add(CacheKey *key, const Culture *culture);
 
 #endif

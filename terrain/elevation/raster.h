@@ -118,7 +118,8 @@ void        raster_sources_from(const char *folders);
 const char *raster_sources(void); /* the folders as they were set */
 /* From here on only files below this folder are opened, after links are followed, even where raster_sources_from allows
  * others. NULL: files anywhere. */
-void raster_stay_within(const char *folder);
+void        raster_stay_within(const char *folder);
+const char *raster_within(void); /* that folder; empty: anywhere */
 
 /* In place, count places: longitude and latitude (rad) to column and row, and back. NaN where the projection has
  * none. */

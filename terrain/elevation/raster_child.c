@@ -274,20 +274,23 @@ static void give_up(RasterChild *child, const WireChannel *channel, Fault fault)
         file_at(path, channel);
         memcpy(key, channel->request.key, sizeof key);
         key[sizeof key - 1] = 0;
+        const bool  vectors = channel->request.ask == WIRE_VECTORS || channel->request.ask == WIRE_FEATURES;
+        const char *copies = vectors ? "ogr2ogr" : "gdal_translate";
         if (fault == FAULT_SILENT)
             log_error(
                 "%s: %s: its reader did nothing for %.0f s and was ended: the file is broken, or its disk does not answer; "
-                "gdal_translate %s OUT.tif makes a plain copy",
-                key, path, atomic_load(&patience_s), path);
+                "%s makes a plain copy: %s %s",
+                key, path, atomic_load(&patience_s), copies, copies, vectors ? "OUT.gpkg FILE" : "FILE OUT.tif");
         else if (fault == FAULT_NONSENSE)
             log_error(
                 "%s: %s: its reader sent what no reader sends, and was ended: the file is broken or hostile; leave it out",
                 key, path);
         else if (fault == FAULT_ENDED)
             log_error(
-                "%s: %s: its reader broke off (%s %d): the file is broken, or needs more than %d MB; fetch it again, or "
-                "gdal_translate -co TILED=YES %s OUT.tif",
-                key, path, WIFSIGNALED(how) ? "signal" : "exit", number, (int)raster_most_memory_mb, path);
+                "%s: %s: its reader broke off (%s %d): the file is broken, or needs more than %d MB; fetch it again, or %s",
+                key, path, WIFSIGNALED(how) ? "signal" : "exit", number, (int)raster_most_memory_mb,
+                vectors ? "cut out an area: ogr2ogr -spat WEST SOUTH EAST NORTH OUT.gpkg FILE"
+                        : "gdal_translate -co TILED=YES FILE OUT.tif");
     }
     pthread_mutex_unlock(&child->lock);
 }

@@ -43,6 +43,9 @@ typedef enum WireAsk {
     WIRE_READ,       /* data: float [height][width], unless the window is uniform, in which case `value` is all of it */
     WIRE_READ_BYTES, /* data: uint8_t [height][width][count], then valid [height][width] */
     WIRE_UNIFORM,    /* whether a window of any size is known to be uniform without being read */
+    WIRE_VECTORS,    /* in place of WIRE_OPEN: texts as there, of files with vectors; the answer's data: WireVectors */
+    WIRE_FEATURES,   /* data: WireBox; the answer's: the next `count` parts of features that reach into it, each a
+                        WireFeature; of the files of WIRE_VECTORS in their order. count 0: the end, and WireEnd */
 } WireAsk;
 
 typedef struct WireRequest {
@@ -74,6 +77,39 @@ typedef struct WireSheet {
     int32_t x0, y0, width, height, band, path_octets;
 } WireSheet;
 
+/* Longitudes and latitudes, degrees: west, south, east, north. */
+typedef struct WireBox {
+    double deg[4];
+} WireBox;
+
+typedef struct WireVectors {
+    WireBox box; /* about all layers; NaN: there is none */
+    int32_t files, layers;
+} WireVectors;
+
+typedef enum WireShape { WIRE_POINT, WIRE_LINE, WIRE_POLYGON, WIRE_SHAPES } WireShape;
+
+enum { wire_most_corners = 65536, wire_most_tags = 96, wire_most_texts = 65536 };
+
+/* A point, a line or a polygon, whole or as a part of a feature of several; behind it corners x { longitude, latitude }
+ * (double, rad), then tags x { name, value }, each text with its 0, to a whole number of 8 octets. A longer line is sent
+ * as several that share their ends. */
+typedef struct WireFeature {
+    uint32_t octets; /* all of it */
+    int32_t  shape;  /* WireShape */
+    int32_t  corners; /* of a polygon's outer ring, not closed; 0: it has more than wire_most_corners */
+    int32_t  holes;   /* its inner rings */
+    int32_t  tags, texts; /* texts: octets of the names and values */
+    int32_t  file, part;  /* number of the file; of the part in its feature */
+    int64_t  number;      /* number of the feature among all that were looked at, from 0 */
+} WireFeature;
+
+typedef struct WireEnd {
+    int64_t features;  /* all that were looked at */
+    int64_t outside;   /* features outside the box, where a file knows how many it has */
+    int64_t shapeless; /* features without a geometry, or with one that is no point, line or polygon */
+} WireEnd;
+
 typedef struct WireChannel {
     WireRequest request;
     WireReply   reply;
@@ -82,6 +118,7 @@ typedef struct WireChannel {
     char log[wire_log_octets]; /* log lines, each a LogLevel as a digit, its text, and a 0; an empty line is the last */
     _Alignas(64) uint8_t data[wire_data_octets];
 } WireChannel;
+_Static_assert(sizeof(WireFeature) % 8 == 0, "corners behind it are aligned");
 
 /* ---- the process that reads a set: started, asked, and given up when it ends or does not answer ---- */
 

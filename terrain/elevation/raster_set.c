@@ -24,6 +24,8 @@ void raster_sources_from(const char *folders)
 
 const char *raster_sources(void) { return sources_from; }
 
+const char *raster_within(void) { return only_within; }
+
 /* ---- rows that were read once, decoded, in a nameless file ---------------------------------------------- */
 
 /* Rows of a raster that have been read, kept in a file as float, in pieces. */

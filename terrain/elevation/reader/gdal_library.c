@@ -6,7 +6,7 @@
 
 /* clang-format off */
 #define GDAL(X)                                                                                                      \
-    X(CPLErrorReset) X(CPLGetLastErrorMsg) X(CPLPopErrorHandler) X(CPLPushErrorHandler) X(CPLQuietErrorHandler)      \
+    X(CPLErrorReset) X(CPLGetLastErrorType) X(CPLGetLastErrorMsg) X(CPLPopErrorHandler) X(CPLPushErrorHandler) X(CPLQuietErrorHandler)      \
     X(CPLSetConfigOption) X(CPLSetErrorHandler) X(CSLAddString) X(CSLDestroy) X(GDALAllRegister) X(GDALClose)        \
     X(GDALDataTypeIsInteger) X(GDALDatasetRasterIO) X(GDALGetBlockSize) X(GDALGetCacheMax64)                         \
     X(GDALGetDataCoverageStatus) X(GDALGetDataTypeName) X(GDALGetDatasetDriver) X(GDALGetDescription)                \
@@ -19,7 +19,14 @@
     X(OSRDemoteTo2D) X(OSRDestroySpatialReference) X(OSRGetAngularUnits) X(OSRGetAttrValue) X(OSRGetAxesCount)       \
     X(OSRGetAxis) X(OSRGetLinearUnits) X(OSRGetName) X(OSRGetPROJSearchPaths) X(OSRGetTargetLinearUnits)             \
     X(OSRImportFromEPSG) X(OSRIsCompound) X(OSRIsGeographic) X(OSRIsProjected) X(OSRIsSame)                          \
-    X(OSRNewSpatialReference) X(OSRSetAxisMappingStrategy) X(OSRSetFromUserInput) X(OSRStripVertical)
+    X(OSRNewSpatialReference) X(OSRSetAxisMappingStrategy) X(OSRSetFromUserInput) X(OSRStripVertical)               \
+    X(GDALDatasetGetLayer) X(GDALDatasetGetLayerCount) X(GDALOpenEx) X(OGR_FD_GetFieldCount)                         \
+    X(OGR_FD_GetFieldDefn) X(OGR_F_Destroy) X(OGR_F_GetFieldAsString) X(OGR_F_GetGeometryRef)                        \
+    X(OGR_F_IsFieldSetAndNotNull) X(OGR_Fld_GetNameRef) X(OGR_GT_Flatten) X(OGR_G_DestroyGeometry)                   \
+    X(OGR_G_GetGeometryCount) X(OGR_G_GetGeometryRef) X(OGR_G_GetGeometryType) X(OGR_G_GetLinearGeometry)            \
+    X(OGR_G_GetPointCount) X(OGR_G_GetPoint) X(OGR_G_HasCurveGeometry) X(OGR_L_GetExtent) X(OGR_L_GetFeatureCount)  \
+    X(OGR_L_GetLayerDefn) X(OGR_L_GetNextFeature) X(OGR_L_GetSpatialRef) X(OGR_L_ResetReading)                       \
+    X(OGR_L_SetSpatialFilterRect)
 /* clang-format on */
 LIBRARY(gdal_library, GDAL, "GDAL", PITVIPER_GDAL_FILE, "libgdal32");
 
@@ -31,6 +38,7 @@ Status reader_prepare(void)
     if (status != STATUS_OK || done) return status;
     done = true;
     CPLSetErrorHandler(CPLQuietErrorHandler);
+    CPLSetConfigOption("OGR_GPKG_FOREIGN_KEY_CHECK", "NO"); /* a GeoPackage is read as it is */
     /* A file may name others (VRT): none makes this process ask a server, which could not be reached. */
     CPLSetConfigOption("GDAL_SKIP",
                        "HTTP,WMS,WMTS,WCS,DAAS,EEDA,EEDAI,PLMosaic,NGW,OGCAPI,STACTA,STACIT,PostGISRaster");

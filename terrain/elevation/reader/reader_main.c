@@ -19,6 +19,7 @@
 #include <unistd.h>
 
 static RasterSet                  set;
+static bool                       vectors; /* the process reads vectors, no rasters */
 static WireChannel               *channels;
 static int                        sockets[wire_channels];
 static _Thread_local WireChannel *here; /* channel of the request that this thread works at */
@@ -106,10 +107,22 @@ static Status open_set(WireChannel *c, const char *key)
         pthread_t thread;
         if (pthread_create(&thread, NULL, serve_channel, (void *)n) != 0) status = STATUS_NO_MEMORY;
     }
-    if (status == STATUS_OK) status = reader_set_open(&set, copy, key);
+    vectors = c->request.ask == WIRE_VECTORS;
+    if (status == STATUS_OK && vectors) {
+        WireVectors found;
+        status = reader_vectors_open(&found, copy, key);
+        if (status == STATUS_OK) memcpy(c->data, &found, sizeof found);
+    } else if (status == STATUS_OK) status = reader_set_open(&set, copy, key);
     free(copy);
     c->reply.count = set.count;
     return status;
+}
+
+static Status tell_features(WireChannel *c)
+{
+    WireBox box;
+    memcpy(&box, c->data, sizeof box);
+    return reader_features(c->data, &c->reply.count, &box, c->request.key);
 }
 
 static Status tell_raster(WireChannel *c, const Raster *r)
@@ -172,7 +185,9 @@ static Status tell_sheets(WireChannel *c, const Raster *r)
 static Status answer(WireChannel *c)
 {
     const WireRequest *q = &c->request;
-    if (q->ask == WIRE_OPEN) return set.count ? STATUS_BAD_VALUE : open_set(c, q->key);
+    if (q->ask == WIRE_OPEN || q->ask == WIRE_VECTORS)
+        return set.count || vectors ? STATUS_BAD_VALUE : open_set(c, q->key);
+    if (q->ask == WIRE_FEATURES) return vectors ? tell_features(c) : STATUS_BAD_VALUE;
     if (q->raster < 0 || q->raster >= set.count) return STATUS_BAD_VALUE;
     Raster limited = set.raster[q->raster]; /* voids are numbers outside of the range in this request */
     limited.low = q->low, limited.high = q->high;

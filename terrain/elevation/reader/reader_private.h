@@ -68,6 +68,18 @@ bool reader_uniform(float *value, const Raster *raster, int band, RasterWindow w
 /* How many pixels of a file lie in blocks that the file has. */
 double reader_data_px(GDALDatasetH file);
 
+/* ---- reader_vector.c: files with vectors; one set in a process, asked by one thread at a time ---- */
+
+/* paths: as raster_set_open has them; of the choices after a name `@srs=` alone is heeded. Failures are logged. */
+Status reader_vectors_open(WireVectors *out, const char *paths, const char *key);
+/* Fills data (wire_data_octets) with the next parts of features that reach into a box; count 0: a WireEnd. */
+Status reader_features(uint8_t *data, int32_t *count, const WireBox *box, const char *key);
+
+/* ---- reader_foreign.c ---- */
+
+/* What is to be done with terrain of a kind that is not read (OpenFlight, 3D Tiles, CDB); NULL: it is none of these. */
+const char *reader_foreign(const char *path);
+
 /* ---- reader_source.c: which files GDAL may be given: it opens by name ---- */
 
 /* Sets what reader_file_allowed accepts. within: the only folder whose files are read; from: folders below which files

@@ -95,6 +95,8 @@ static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char 
 /* gzip and zip files are read through GDAL's own names for what is in them. */
 static const char *remedy(char out[path_size + 80], const char *path)
 {
+    const char *foreign = reader_foreign(path);
+    if (foreign) return foreign;
     const char *ending = strrchr(path, '.');
     const bool  gzip = ending && strcasecmp(ending, ".gz") == 0, zip = ending && strcasecmp(ending, ".zip") == 0;
     if (gzip) snprintf(out, path_size + 80, "name it /vsigzip/%s, or gunzip it", path);
@@ -249,7 +251,9 @@ static Status add_folder(RasterSet *set, const char *path, const RasterChoice *c
     }
     free(name);
     if (status == STATUS_OK && used == 0) {
-        log_error("%s: the folder %s holds nothing that GDAL reads; gdalinfo --formats lists what it does", key, path);
+        const char *foreign = reader_foreign(path);
+        log_error("%s: the folder %s holds nothing that GDAL reads; %s", key, path,
+                  foreign ? foreign : "gdalinfo --formats lists what it does");
         status = STATUS_BAD_VALUE;
     }
     return status;
