@@ -296,7 +296,7 @@ Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m,
     return status == STATUS_OK ? world_warm(world, course, config, shadow_m, pool) : status;
 }
 
-Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena)
+static Status ground_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena)
 {
     HeatNow  *now;
     MarkHeat *mark_heat = NULL;
@@ -310,6 +310,15 @@ Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *mar
     if (!*out) return STATUS_NO_MEMORY;
     **out = (HeatScene){.now = now, .shadow = world->shadow, .marks = mark_heat};
     return STATUS_OK;
+}
+
+Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena)
+{
+    SceneryTemps *scenery = NULL;
+    Status        status = ground_heat_at(out, world, marks, unix_s, arena);
+    if (status == STATUS_OK && *out) status = world_scenery_temps(&scenery, world, unix_s, arena);
+    if (status == STATUS_OK && *out) (*out)->scenery = scenery;
+    return status;
 }
 
 double world_air_k(const World *world, double unix_s)
@@ -387,7 +396,7 @@ static Status ground_there(PlaceHeat *out, WorldVehicles *v, double unix_s, cons
     const World *world = v->world;
     if (v->scene_s != unix_s || !v->scene || v->scene->shadow != world->shadow) { /* benches change its shadows */
         arena_reset(v->arena);
-        const Status status = world_heat_at(&v->scene, world, NULL, unix_s, v->arena);
+        const Status status = ground_heat_at(&v->scene, world, NULL, unix_s, v->arena);
         if (status != STATUS_OK) return status;
         v->scene_s = unix_s;
     }

@@ -7,7 +7,7 @@
  * its material (tests/render/test_thermal.c). */
 
 #include "render/light/thermal.h"
-#include "render/heat/heat.h"
+#include "render/heat/scenery_heat.h"
 #include "render/trace/scenery/scenery_tracer.h"
 #include "pitviper_simd.h"
 #include "pitviper.h"
@@ -117,6 +117,17 @@ static double part_k(const PartTemps *parts, double air_k, const Hits *hits, int
     return isfinite(temp_k) ? temp_k : air_k;
 }
 
+/* Temperature of a building, a work or clutter at a hit; that of the air where none is known. */
+static double scenery_k(const Air *air, const PartTemps *parts, double air_k, const Hits *hits, int i)
+{
+    const double n_enu[3] = {(double)hits->n_geo[0][i], (double)hits->n_geo[1][i], (double)hits->n_geo[2][i]};
+    double       p_body[3], n_body[3];
+    if (!parts || !air->heat || !air->heat->scenery) return air_k;
+    scenery_frame_on_body(p_body, n_body, scenery_frame_in(parts->visibility), hits, i, n_enu);
+    return scenery_temp_k(air->heat->scenery, (int)hits->instance[i] - 1, hits->part[i] - 1, p_body, n_enu) + air_k -
+           air->light.weather.air_temp_k;
+}
+
 /* Temperature of the air at eight hits: straight between the nodes, as air_temp_at. */
 static F32x8 air_k8(const Air *air, const Hits *hits, int first)
 {
@@ -192,7 +203,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
             } else if (hits->kind[i] == hit_plant) {
                 temp_k[i] = (float)wood_k(air, material[i], here_k, hits, i);
             } else if (hits->kind[i] == hit_scenery) {
-                temp_k[i] = (float)here_k;
+                temp_k[i] = (float)scenery_k(air, parts, here_k, hits, i);
             } else if (hits->entity[i]) {
                 temp_k[i] = (float)part_k(parts, here_k, hits, i);
             } else if (!air->heat || hits->surface[i] == SURFACE_NONE) {

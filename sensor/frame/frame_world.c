@@ -101,6 +101,16 @@ Weather frame_weather_at(const Config *config, const World *world, double unix_s
     return weather;
 }
 
+static Status warm_scenery(World *world, const HeatConfig *heat, Pool *pool)
+{
+    const double begun_s = wall_clock_s();
+    const Status status = world_warm_scenery(world, scenery_tracer_of(world->scenery), heat, NULL, pool);
+    if (status == STATUS_OK)
+        log_detail("heat: scenery warmed up in %.0f ms, %.1f MB", 1e3 * (wall_clock_s() - begun_s),
+                   1e-6 * (double)scenery_heat_bytes(world->scenery_heat));
+    return status;
+}
+
 Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool)
 {
     const WeatherCourseConfig about = {frame_weather(config, world), config->weather.air_range_k,
@@ -119,6 +129,7 @@ Status frame_world_warm(World *world, const Config *config, double unix_s, Pool 
         log_detail("heat: ground warmed up over two days in %.0f ms, %.1f MB, %.1f MB of shadows",
                    1e3 * (wall_clock_s() - begun_s), 1e-6 * (double)heat_bytes(world->heat),
                    world->shadow ? 1e-6 * (double)heat_shadow_bytes(world->shadow) : 0.0);
+    if (status == STATUS_OK && world->scenery) status = warm_scenery(world, &heat, pool);
     return status;
 }
 

@@ -314,6 +314,9 @@ enum { config_paths_size = 4096 };
         "buildings, walls, fences, lines and what else people built; off: none; invented: on the plots and along the " \
         "ways of synthetic terrain; else vector files (GeoJSON, Shapefile, GeoPackage), separated by commas, or a " \
         "list") \
+    ROW(PATH, terrain., trees, "", 1024, \
+        "table of single trees (lat_deg, lon_deg or x_m, y_m; kind, height_m, marked), beside those of terrain.woods; " \
+        "empty: none") \
     ROW(DOUBLE, terrain., clutter, 0, 0, 20, "", \
         "civil vehicles, machines, animals, fires and rocks, by the densities of etc/clutter.csv times this; 0: none") \
     ROW(SWITCH, terrain., woods, true, "on|off", \
