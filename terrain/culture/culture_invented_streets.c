@@ -41,7 +41,7 @@ static bool post_fits(const Inventor *v, const Rectangle *post, double tall_m, d
     const Rectangle roomy = rectangle_grown(post, 0.3), alone = rectangle_grown(post, apart_m);
     const uint8_t   surface = (uint8_t)landscape_surface(v->landscape, post->x_m, post->y_m);
     return surface != SURFACE_ROAD && surface != SURFACE_BUILT && invent_is_dry(v, post, 0.1) &&
-           !invent_is_taken(v, &roomy, TAKEN_BUILDING | TAKEN_LINE, -1) &&
+           !invent_is_taken(v, &roomy, TAKEN_BUILDING | TAKEN_LINE | TAKEN_DRIVE, -1) &&
            !invent_is_taken(v, &alone, TAKEN_THING, -1) && invent_is_clear(v, post, tall_m);
 }
 
@@ -136,14 +136,15 @@ static bool span_at(Rectangle *out, const Inventor *v, const Rectangle *a, const
            !invent_is_taken(v, &roomy, TAKEN_BUILDING, -1) && invent_is_clear(v, out, pole_m);
 }
 
-static void add_wires(Inventor *v, const Rectangle *pole, const Rectangle *span, int poles)
+/* One line over some poles; the first of them may be the last of the line before, and stands already. */
+static void add_wires(Inventor *v, const Rectangle *pole, const Rectangle *span, int poles, bool goes_on)
 {
     static const CultureLine wires = {.kind = CULTURE_POWER_LINE, .width_m = 1.4f, .height_m = (float)wires_m};
     double                   corner[invent_most_poles][2];
-    if (poles < 3) return;
+    if (poles < (goes_on ? 2 : 3)) return;
     for (int k = 0; k < poles; k++) {
         corner[k][0] = pole[k].x_m, corner[k][1] = pole[k].y_m;
-        invent_point(v, CULTURE_POLE, &pole[k], pole_m, -1);
+        if (k > 0 || !goes_on) invent_point(v, CULTURE_POLE, &pole[k], pole_m, -1);
         if (k > 0) invent_take(v, &span[k], TAKEN_WIRES, -1);
     }
     invent_line(v, &wires, (const double(*)[2])corner, poles);
@@ -157,14 +158,17 @@ static void add_power_line(Inventor *v, int way)
     Rectangle           pole[invent_most_poles], span[invent_most_poles];
     int                 poles = 0;
     double              at_m = first_m;
+    bool                goes_on = false;
     while (at_m < length_m) {
         bool found = false;
-        if (poles == 0 || poles == invent_most_poles) {
-            const bool goes_on = poles == invent_most_poles;
-            add_wires(v, pole, span, poles);
-            if (goes_on) pole[0] = pole[poles - 1], poles = 1;
-            else if (pole_at(&pole[0], v, way, at_m)) poles = 1;
-            if (poles == 0) at_m += on_m;
+        if (poles == invent_most_poles) {
+            add_wires(v, pole, span, poles, goes_on);
+            pole[0] = pole[poles - 1], poles = 1, goes_on = true;
+        }
+        if (poles == 0) {
+            goes_on = false;
+            if (pole_at(&pole[0], v, way, at_m)) poles = 1;
+            else at_m += on_m;
             continue;
         }
         for (int k = 0; k < 9 && !found; k++) {
@@ -174,10 +178,10 @@ static void add_power_line(Inventor *v, int way)
             found = true, at_m = next_m, poles++;
         }
         if (found) continue;
-        add_wires(v, pole, span, poles);
+        add_wires(v, pole, span, poles, goes_on);
         poles = 0, at_m += on_m;
     }
-    add_wires(v, pole, span, poles);
+    add_wires(v, pole, span, poles, goes_on);
 }
 
 /* The longest road that ends in a village, which is the one that was laid to join it with the next. */
@@ -229,8 +233,13 @@ static void add_church(Inventor *v, int village)
                                {nave + tower, wide}};
         const Rectangle yard = rectangle_grown(&all, yard_m);
         if (invent_is_taken(v, &yard, TAKEN_ALL, -1) || invent_slope(v, &all) > 0.8 * culture_steepest) continue;
-        const double score = fabs(road_distance_m(v, all.x_m, all.y_m) - to_road_m) + 0.3 * away_m;
-        if (score >= least || !invent_is_dry(v, &yard, 0) || !invent_is_clear(v, &yard, tower_top_m)) continue;
+        const double    score = fabs(road_distance_m(v, all.x_m, all.y_m) - to_road_m) + 0.3 * away_m;
+        const Rectangle parts[2] = {rectangle_within(&all, tower, 0, nave, wide),
+                                    rectangle_within(&all, -nave, 0, tower, tower)};
+        if (score >= least || invent_slope(v, &parts[0]) > culture_steepest ||
+            invent_slope(v, &parts[1]) > culture_steepest || !invent_is_dry(v, &yard, 0) ||
+            !invent_is_clear(v, &yard, tower_top_m))
+            continue;
         least = score, best = all;
     }
     if (least == INFINITY) return;
