@@ -98,6 +98,7 @@ static void build_farm(Inventor *v, const Layout *l)
     if (unit(l, 24) < 0.6) put_point(v, l, CULTURE_TANK, 16, -27, 2, 2, 2.6);
     if (unit(l, 25) < 0.3) put_point(v, l, CULTURE_TANK, -28, 26, 7, 7, 4);
     put_point(v, l, CULTURE_LAMP, -15, 4, 0.16, 0.16, 5);
+    put_point(v, l, CULTURE_POLE, -20, -33, 0.26, 0.26, 8); /* of the wire to the farm */
     lay_yard(v, l);
     enclose(v, l);
 }

@@ -50,7 +50,7 @@ typedef struct GroundGrid {
 
 enum {
     invent_most_villages = 64,
-    invent_most_poles = 64, /* of one line */
+    invent_most_poles = 512, /* of one line */
     /* numbers of owners: first those of plots */
     invent_owner_church = 1 << 24,
     invent_owner_farm = 2 << 24,

@@ -113,7 +113,7 @@ static void add_works(Inventor *v, int village)
 
 void invent_works(Inventor *v)
 {
-    static const double share = 0.5; /* of villages of some size */
+    static const double share = 0.7; /* of villages of some size */
     static const int    least_houses = 25;
     for (int n = 0; n < v->villages && v->status == STATUS_OK; n++)
         if (v->houses[n] >= least_houses && invented_unit(invented_hash(v->seed, 19, n)) < share) add_works(v, n);

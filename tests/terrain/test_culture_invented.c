@@ -181,25 +181,36 @@ static void outlines_are_on_the_ground(const Culture *c, const Landscape *land)
     }
 }
 
-/* Spans of power lines, and a pole at every corner. */
-static void wires_hang_from_poles(const Culture *c)
+/* Spans of power lines, which have poles of their own at their corners; lamps along roads; signs beside them. */
+static void wires_and_lamps_are_spaced(const Culture *c, const Landscape *land)
 {
-    int spans = 0;
+    int spans = 0, lamps = 0, spaced = 0, signs = 0, poles = 0;
     for (int n = 0; n < c->lines; n++) {
         if (c->line[n].kind != CULTURE_POWER_LINE) continue;
         for (int k = 0; k < c->line[n].corners; k++) {
             const double *p = c->corner_m[c->line[n].first_corner + k];
-            bool          pole = false;
-            for (int m = 0; m < c->points && !pole; m++)
-                pole = c->point[m].kind == CULTURE_POLE && hypot(c->point[m].x_m - p[0], c->point[m].y_m - p[1]) < 0.01;
-            CHECK(pole);
+            for (int m = 0; m < c->points; m++) CHECK(hypot(c->point[m].x_m - p[0], c->point[m].y_m - p[1]) > 0.5);
+            poles++;
             if (k == 0) continue;
             const double span_m = hypot(p[0] - p[-2], p[1] - p[-1]);
             CHECK(span_m >= 40 && span_m <= 60);
             spans++;
         }
     }
-    CHECK(spans > 20);
+    for (int n = 0; n < c->points; n++) {
+        const CulturePoint *p = &c->point[n];
+        WayPlace            way;
+        double              least = INFINITY;
+        if (p->kind == CULTURE_SIGN && landscape_way(&way, land, p->x_m, p->y_m) && way.kind == WAY_ROAD) signs++;
+        if (p->kind != CULTURE_LAMP || !landscape_way(&way, land, p->x_m, p->y_m)) continue;
+        CHECK(fabs(way.across_m) > way.half_m + 0.5);
+        for (int k = 0; k < c->points; k++)
+            if (k != n && c->point[k].kind == CULTURE_LAMP)
+                least = fmin(least, hypot(c->point[k].x_m - p->x_m, c->point[k].y_m - p->y_m));
+        lamps++, spaced += least > 24 && least < 46;
+    }
+    print_message("%d spans, %d poles; %d lamps, %d spaced; %d signs at roads\n", spans, poles, lamps, spaced, signs);
+    CHECK(spans > 20 && lamps > 15 && spaced > lamps / 2 && signs > 1);
 }
 
 static void nothing_is_on_anything(void **state)
@@ -217,10 +228,11 @@ static void nothing_is_on_anything(void **state)
         CHECK(local_frame_at(&frame, &origin) == STATUS_OK);
         CHECK(landscape_create_from(&land, &config, &frame,
                                     &(LandscapeEvidence){.place_count = sea ? 4 : 0, .place = place}) == STATUS_OK);
+        CHECK(!sea || landscape_surface(&land, 2600, 0) == SURFACE_WATER);
         Culture c = invent(&land, 0, 0, 4000);
         outlines_are_apart(&c);
         outlines_are_on_the_ground(&c, &land);
-        wires_hang_from_poles(&c);
+        wires_and_lamps_are_spaced(&c, &land);
         culture_free(&c);
         landscape_destroy(&land);
     }
