@@ -25,7 +25,9 @@ static const double culture_vehicle_m = 12, culture_line_clearance_m = 0.5, cult
 static const double culture_above_ridge_m = 1.2;
 
 /* Replaces *out, which is not freed, with what stands in the square, indexed. The same bits on any thread, in any order
- * of squares. 0.2 s and 30 MB of scratch memory for 12 x 16 km. STATUS_BAD_VALUE: the square is not one, logged;
+ * of squares. Whatever the square, the
+ * whole finest level is laid out: 0.4 s of one processor for 16 x 16 km, 0.6 s and 35 MB for a while with 40 000 fixes
+ * and 23 000 clear lines. STATUS_BAD_VALUE: the square is not one, logged;
  * STATUS_NO_MEMORY. *out is untouched then. */
 Status culture_invent(Culture *out, const Landscape *landscape, const CultureConfig *config);
 

@@ -98,6 +98,7 @@ static void build_farm(Inventor *v, const Layout *l)
     if (unit(l, 24) < 0.6) put_point(v, l, CULTURE_TANK, 16, -27, 2, 2, 2.6);
     if (unit(l, 25) < 0.3) put_point(v, l, CULTURE_TANK, -28, 26, 7, 7, 4);
     put_point(v, l, CULTURE_LAMP, -15, 4, 0.16, 0.16, 5);
+    put_point(v, l, CULTURE_POLE, -20, -33, 0.26, 0.26, 8); /* of the wire to the farm */
     lay_yard(v, l);
     enclose(v, l);
 }
@@ -116,9 +117,10 @@ static bool find_site(Layout *out, const Inventor *v, int cell)
         if (invent_is_built_up(v, site.x_m, site.y_m, away_m) || invent_slope(v, &site) > steepest ||
             invent_is_taken(v, &site, TAKEN_ALL, -1))
             continue;
-        const double wild = invent_wild_share(v, &site);
-        const double score = (invent_ways_about(v, way.x_m, way.y_m, crossing_m) >= 3 ? 0 : 1) + 2 * wild;
-        if (wild > wildest || score >= least || !invent_is_dry(v, &site, 0) || !invent_is_clear(v, &site, top_m))
+        const double    wild = invent_wild_share(v, &site);
+        const double    score = (invent_ways_about(v, way.x_m, way.y_m, crossing_m) >= 3 ? 0 : 1) + 2 * wild;
+        const Rectangle all = invent_site_and_front(&site, front_m);
+        if (wild > wildest || score >= least || !invent_is_dry(v, &site, 0) || !invent_is_clear(v, &all, top_m))
             continue;
         least = score;
         *out = (Layout){site, invent_unit(hash, 6) < 0.5 ? 1 : -1, invent_owner_farm + cell, hash};

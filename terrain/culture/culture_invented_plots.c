@@ -14,7 +14,8 @@ static bool is_at_gate(const Enclosure *e, double x_m, double y_m)
 static bool is_open(const Inventor *v, const Enclosure *e, const Rectangle *piece)
 {
     static const double room_m = 0.2;
-    return !is_at_gate(e, piece->x_m, piece->y_m) && !invent_is_taken(v, piece, TAKEN_BUILDING | TAKEN_THING, -1) &&
+    return !is_at_gate(e, piece->x_m, piece->y_m) &&
+           !invent_is_taken(v, piece, TAKEN_BUILDING | TAKEN_THING | TAKEN_DRIVE, -1) &&
            !invent_is_taken(v, piece, TAKEN_PLOT, e->owner) && invent_is_dry(v, piece, room_m) &&
            invent_is_clear(v, piece, (double)e->line.height_m);
 }
@@ -82,11 +83,26 @@ bool invent_fits(const Inventor *v, const Rectangle *r, double room_m, double to
            invent_is_dry(v, r, 0.3) && invent_is_clear(v, r, top_m);
 }
 
-/* A garage at the end of the drive that the cover draws beside the house. */
+/* Where the middle of the drive is that the cover draws beside the house. */
+static double drive_of(const HousePlot *p)
+{
+    return p->house[0] + (p->house[0] > 0 ? -1 : 1) * (p->house_half[0] + 1.8);
+}
+
+/* The drive from the house's front to the way. */
+static void keep_drive(Inventor *v, const HousePlot *p, const Rectangle *plot, double front, int owner)
+{
+    static const double half_m = 1.7, beyond_m = 1.3;
+    const double        from = fabs(p->house[1]) + p->house_half[1], to = p->half_across_m + beyond_m;
+    const Rectangle     r = rectangle_within(plot, drive_of(p), front * 0.5 * (from + to), half_m, 0.5 * (to - from));
+    invent_take(v, &r, TAKEN_DRIVE, owner);
+}
+
+/* A garage at the end of the drive. */
 static void add_garage(Inventor *v, const HousePlot *p, const Rectangle *plot, double front, int owner, uint64_t hash)
 {
     static const double half_m[2] = {1.6, 2.8}, eaves_m = 2.4;
-    const double        drive = p->house[0] + (p->house[0] > 0 ? -1 : 1) * (p->house_half[0] + 1.8);
+    const double        drive = drive_of(p);
     const double        back = p->house_half[1] + half_m[1] - 2.5 * invent_unit(hash, 41);
     const Rectangle     r = rectangle_within(plot, drive, p->house[1] - front * back, half_m[0], half_m[1]);
     if (fabs(drive) + half_m[0] > p->half_along_m - 0.6) return;
@@ -120,16 +136,15 @@ static void add_shed(Inventor *v, const HousePlot *p, const Rectangle *plot, dou
 
 /* ---- borders ---------------------------------------------------------------------------------------- */
 
-/* Along the lane, with gates before the drive and the door; at the sides and behind, where most plots have their hedge
+/* Along the lane, open where drives are and before the door; at the sides and behind, where most plots have their hedge
  * alone. */
 static void add_borders(Inventor *v, const HousePlot *p, const Rectangle *plot, double front, int owner, uint64_t hash)
 {
     static const double inset_m = 0.25;
     const double        u = invent_unit(hash, 60), w = invent_unit(hash, 61);
     const double        along = p->half_along_m - inset_m, across = front * (p->half_across_m - inset_m);
-    const double        drive = p->house[0] + (p->house[0] > 0 ? -1 : 1) * (p->house_half[0] + 1.8);
-    Enclosure           e = {.owner = owner, .gates = 2, .gate_half_m = {1.9, 1.1}};
-    rectangle_at(e.gate_m[0], plot, drive, across), rectangle_at(e.gate_m[1], plot, p->house[0], across);
+    Enclosure           e = {.owner = owner, .gates = 1, .gate_half_m = {1.1}};
+    rectangle_at(e.gate_m[0], plot, p->house[0], across); /* before the door */
     if (u < 0.78) {
         e.line = u < 0.3    ? invent_border(CULTURE_WALL, 0.8 + 0.5 * invent_unit(hash, 62))
                  : u < 0.66 ? invent_border(CULTURE_FENCE, 1.0)
@@ -162,6 +177,7 @@ void invent_plots(Inventor *v)
                 add_borders(v, &plot[n], &r, front, n, hash);
                 continue;
             }
+            keep_drive(v, &plot[n], &r, front, n);
             if (invent_unit(hash, 40) < 0.6) add_garage(v, &plot[n], &r, front, n, hash);
             if (invent_unit(hash, 44) < 0.5) add_shed(v, &plot[n], &r, front, n, hash);
         }

@@ -28,7 +28,8 @@ typedef enum TakenKind {
     TAKEN_WIRES = 8, /* between poles, above the ground */
     TAKEN_SITE = 16, /* all of a farm, works or churchyard */
     TAKEN_PLOT = 32,
-    TAKEN_ALL = 63
+    TAKEN_DRIVE = 64, /* kept open from a way to a house or yard */
+    TAKEN_ALL = 127
 } TakenKind;
 
 typedef struct Taken {
@@ -49,14 +50,14 @@ typedef struct GroundGrid {
 
 enum {
     invent_most_villages = 64,
-    invent_most_poles = 64, /* of one line */
+    invent_most_poles = 512, /* of one line */
     /* numbers of owners: first those of plots */
     invent_owner_church = 1 << 24,
     invent_owner_farm = 2 << 24,
     invent_owner_works = 3 << 24,
     invent_owner_mast = 4 << 24,
 };
-static const double invent_shortest_span_m = 38, invent_longest_span_m = 60;
+static const double invent_shortest_span_m = 40, invent_longest_span_m = 60;
 
 /* Vertices of roads, lanes and tracks, by cells of invent_site_cell_m over the finest level. */
 static const double invent_site_cell_m = 1000;
@@ -177,6 +178,8 @@ void   invent_sites_close(Inventor *v);
 bool invent_beside_way(Rectangle *out, const Inventor *v, int cell, uint64_t hash, bool on_roads);
 /* A site beside a way, its near side front_m from the way's middle; its own left is away from the way. */
 Rectangle invent_site_beside(const Rectangle *way, bool left, double front_m, const double half_m[2]);
+/* A site with the ground between it and its way. */
+Rectangle invent_site_and_front(const Rectangle *site, double front_m);
 /* How many ways cross a circle, by the cover. */
 int invent_ways_about(const Inventor *v, double x_m, double y_m, double radius_m);
 /* Share of a rectangle that is scrub, rock or track. */

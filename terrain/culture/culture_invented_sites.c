@@ -84,6 +84,11 @@ Rectangle invent_site_beside(const Rectangle *way, bool left, double front_m, co
     return rectangle_within(&r, 0, front_m + half_m[1], half_m[0], half_m[1]);
 }
 
+Rectangle invent_site_and_front(const Rectangle *site, double front_m)
+{
+    return rectangle_within(site, 0, -0.5 * front_m, site->half_m[0], site->half_m[1] + 0.5 * front_m);
+}
+
 int invent_ways_about(const Inventor *v, double x_m, double y_m, double radius_m)
 {
     enum { looks = 64 };

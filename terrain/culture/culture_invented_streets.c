@@ -41,7 +41,7 @@ static bool post_fits(const Inventor *v, const Rectangle *post, double tall_m, d
     const Rectangle roomy = rectangle_grown(post, 0.3), alone = rectangle_grown(post, apart_m);
     const uint8_t   surface = (uint8_t)landscape_surface(v->landscape, post->x_m, post->y_m);
     return surface != SURFACE_ROAD && surface != SURFACE_BUILT && invent_is_dry(v, post, 0.1) &&
-           !invent_is_taken(v, &roomy, TAKEN_BUILDING | TAKEN_LINE, -1) &&
+           !invent_is_taken(v, &roomy, TAKEN_BUILDING | TAKEN_LINE | TAKEN_DRIVE, -1) &&
            !invent_is_taken(v, &alone, TAKEN_THING, -1) && invent_is_clear(v, post, tall_m);
 }
 
@@ -136,6 +136,7 @@ static bool span_at(Rectangle *out, const Inventor *v, const Rectangle *a, const
            !invent_is_taken(v, &roomy, TAKEN_BUILDING, -1) && invent_is_clear(v, out, pole_m);
 }
 
+/* A line over some places of poles, which the line itself has. */
 static void add_wires(Inventor *v, const Rectangle *pole, const Rectangle *span, int poles)
 {
     static const CultureLine wires = {.kind = CULTURE_POWER_LINE, .width_m = 1.4f, .height_m = (float)wires_m};
@@ -143,7 +144,7 @@ static void add_wires(Inventor *v, const Rectangle *pole, const Rectangle *span,
     if (poles < 3) return;
     for (int k = 0; k < poles; k++) {
         corner[k][0] = pole[k].x_m, corner[k][1] = pole[k].y_m;
-        invent_point(v, CULTURE_POLE, &pole[k], pole_m, -1);
+        invent_take(v, &pole[k], TAKEN_THING, -1);
         if (k > 0) invent_take(v, &span[k], TAKEN_WIRES, -1);
     }
     invent_line(v, &wires, (const double(*)[2])corner, poles);
@@ -159,15 +160,12 @@ static void add_power_line(Inventor *v, int way)
     double              at_m = first_m;
     while (at_m < length_m) {
         bool found = false;
-        if (poles == 0 || poles == invent_most_poles) {
-            const bool goes_on = poles == invent_most_poles;
-            add_wires(v, pole, span, poles);
-            if (goes_on) pole[0] = pole[poles - 1], poles = 1;
-            else if (pole_at(&pole[0], v, way, at_m)) poles = 1;
-            if (poles == 0) at_m += on_m;
+        if (poles == 0) {
+            if (pole_at(&pole[0], v, way, at_m)) poles = 1;
+            else at_m += on_m;
             continue;
         }
-        for (int k = 0; k < 9 && !found; k++) {
+        for (int k = 0; k < 9 && !found && poles < invent_most_poles; k++) {
             const double next_m = at_m + span_m + tries_m[k];
             if (!pole_at(&pole[poles], v, way, next_m) || !span_at(&span[poles], v, &pole[poles - 1], &pole[poles]))
                 continue;
@@ -200,37 +198,57 @@ static int longest_road(const Inventor *v, int village)
 
 /* ---- churches ---------------------------------------------------------------------------------------- */
 
-static double road_distance_m(const Inventor *v, double x_m, double y_m)
+/* The vertices of roads and lanes about a place. */
+static int vertices_near(double (*out)[2], int most, const Inventor *v, const double p_m[2], double near_m)
 {
-    double least_m = INFINITY;
+    int count = 0;
     for (int way = 0; way < v->way_count; way++)
         for (int n = v->way_first[way]; n < v->way_first[way + 1] && v->way_kind[way] <= WAY_LANE; n++)
-            least_m = fmin(least_m, hypot(v->vertex[n][0] - x_m, v->vertex[n][1] - y_m));
-    return least_m;
+            if (count < most && hypot(v->vertex[n][0] - p_m[0], v->vertex[n][1] - p_m[1]) < near_m)
+                memcpy(out[count++], v->vertex[n], sizeof *out);
+    return count;
+}
+
+static double nearest_m(const double (*vertex)[2], int count, double x_m, double y_m)
+{
+    double square = INFINITY;
+    for (int n = 0; n < count; n++) {
+        const double dx = vertex[n][0] - x_m, dy = vertex[n][1] - y_m;
+        square = fmin(square, dx * dx + dy * dy);
+    }
+    return sqrt(square);
 }
 
 /* A nave with its tower at the west end, in a walled yard by a road near the middle of the village. */
 static void add_church(Inventor *v, int village)
 {
-    enum { looks = 300 };
-    static const double nearest_m = 20, farthest_m = 260, yard_m = 6, to_road_m = 24, tower_top_m = 32;
+    enum { looks = 300, most_vertices = 1024 };
+    static const double closest_m = 20, farthest_m = 260, yard_m = 6, to_road_m = 24, tower_top_m = 32;
     const uint64_t      h = invented_hash(v->seed, 14, village);
     const double        tower = 2.5 + 0.6 * invent_unit(h, 0), nave = 8 + 4 * invent_unit(h, 1),
                  wide = 4.2 + invent_unit(h, 2);
     const double turn = 0.5 * (invent_unit(h, 3) - 0.5);
     double       least = INFINITY;
     Rectangle    best = {0};
+    double       road[most_vertices][2];
+    const int    roads = vertices_near(road, most_vertices, v, v->village[village], farthest_m + 100);
     for (int k = 0; k < looks; k++) {
         const double    angle = 2 * pi_rad * invent_unit(h, 10 + 2 * k), u = invent_unit(h, 11 + 2 * k);
-        const double    away_m = nearest_m + (farthest_m - nearest_m) * u;
+        const double    away_m = closest_m + (farthest_m - closest_m) * u;
         const Rectangle all = {v->village[village][0] + away_m * cos(angle),
                                v->village[village][1] + away_m * sin(angle),
                                {cos(turn), sin(turn)},
                                {nave + tower, wide}};
         const Rectangle yard = rectangle_grown(&all, yard_m);
         if (invent_is_taken(v, &yard, TAKEN_ALL, -1) || invent_slope(v, &all) > 0.8 * culture_steepest) continue;
-        const double score = fabs(road_distance_m(v, all.x_m, all.y_m) - to_road_m) + 0.3 * away_m;
-        if (score >= least || !invent_is_dry(v, &yard, 0) || !invent_is_clear(v, &yard, tower_top_m)) continue;
+        const double score =
+            fabs(nearest_m((const double(*)[2])road, roads, all.x_m, all.y_m) - to_road_m) + 0.3 * away_m;
+        const Rectangle parts[2] = {rectangle_within(&all, tower, 0, nave, wide),
+                                    rectangle_within(&all, -nave, 0, tower, tower)};
+        if (score >= least || invent_slope(v, &parts[0]) > culture_steepest ||
+            invent_slope(v, &parts[1]) > culture_steepest || !invent_is_dry(v, &yard, 0) ||
+            !invent_is_clear(v, &yard, tower_top_m))
+            continue;
         least = score, best = all;
     }
     if (least == INFINITY) return;

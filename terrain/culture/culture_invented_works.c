@@ -101,9 +101,10 @@ static void add_works(Inventor *v, int village)
         if (!(length_m > 0)) continue;
         const Rectangle road = {a[0], a[1], {(b[0] - a[0]) / length_m, (b[1] - a[1]) / length_m}, {0, 0}};
         const Rectangle site = invent_site_beside(&road, invent_unit(hash, 1) < 0.5, works_front_m, works_half_m);
+        const Rectangle all = invent_site_and_front(&site, works_front_m);
         if (invent_is_built_up(v, site.x_m, site.y_m, apart_m) || invent_slope(v, &site) > steepest ||
             invent_is_taken(v, &site, TAKEN_ALL, -1) || invent_wild_share(v, &site) > wildest ||
-            !invent_is_dry(v, &site, 0) || !invent_is_clear(v, &site, works_top_m))
+            !invent_is_dry(v, &site, 0) || !invent_is_clear(v, &all, works_top_m))
             continue;
         build_works(v, &site, hash, invent_owner_works + village);
         return;
@@ -112,7 +113,7 @@ static void add_works(Inventor *v, int village)
 
 void invent_works(Inventor *v)
 {
-    static const double share = 0.5; /* of villages of some size */
+    static const double share = 0.7; /* of villages of some size */
     static const int    least_houses = 25;
     for (int n = 0; n < v->villages && v->status == STATUS_OK; n++)
         if (v->houses[n] >= least_houses && invented_unit(invented_hash(v->seed, 19, n)) < share) add_works(v, n);
