@@ -44,9 +44,9 @@ void roof_plan_free(RoofPlan *plan);
 enum { cell_slots = 24 };
 
 typedef struct CellMesh {
-    Model  model;
-    int    vertex_room, triangle_room, part_room, id_room, pending_room, pendings;
-    Status status;
+    Model     model;
+    int       vertex_room, triangle_room, part_room, id_room, pending_room, pendings;
+    Status    status;
     uint64_t *id; /* [model.part_count]: of its record */
     /* of the record being made: its parts and their triangles, in any order */
     uint64_t  record;
@@ -57,8 +57,8 @@ typedef struct CellMesh {
 
 void cell_begin(CellMesh *cell, uint64_t id);
 /* The slot of a part of this name, material and role in the record being made. */
-int cell_part(CellMesh *cell, const char *name, const char *material, HeatRole role);
-void cell_end(CellMesh *cell);
+int      cell_part(CellMesh *cell, const char *name, const char *material, HeatRole role);
+void     cell_end(CellMesh *cell);
 uint32_t cell_vertex(CellMesh *cell, const double p[3], const double n[3]);
 void     cell_triangle(CellMesh *cell, int slot, uint32_t a, uint32_t b, uint32_t c);
 /* A flat polygon, counter-clockwise seen from outside; nothing when it has no area. */
@@ -88,14 +88,14 @@ typedef struct BuildingWork {
     const Building *b;
     CellMesh       *cell;
     int             n;
-    double (*p)[2]; /* outline in the cell's plane */
-    double base_m;  /* in the cell's height */
-    double top_m;   /* of the walls' upright part over the base: what roofs leave */
-    double skirt_m; /* how far walls go into the ground */
-    int    wall, roof;
-    SceneryGround *ground_m;   /* in ENU */
+    double (*p)[2];         /* outline in the cell's plane */
+    double         base_m;  /* in the cell's height */
+    double         top_m;   /* of the walls' upright part over the base: what roofs leave */
+    double         skirt_m; /* how far walls go into the ground */
+    int            wall, roof;
+    SceneryGround *ground_m; /* in ENU */
     void          *user;
-    double         origin[3]; /* of the cell in ENU */
+    double         origin[3];                /* of the cell in ENU */
     double         ridge[2][2], ridge_top_m; /* the highest line of the roof, for chimneys */
 } BuildingWork;
 
