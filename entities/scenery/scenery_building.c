@@ -1,4 +1,5 @@
-/* entities/scenery/scenery_building.c: one building of a culture: its place in the cell, roof, walls, chimneys, vents. */
+/* entities/scenery/scenery_building.c: one building of a culture: its place in the cell, roof, walls, chimneys, vents.
+ */
 #include "entities/scenery/scenery_buildings_private.h"
 
 #include <stdlib.h>
@@ -19,15 +20,17 @@ static void chimneys(BuildingWork *w)
 {
     static const double over_m = 0.9;
     const int           count = w->b->chimneys > 4 ? 4 : w->b->chimneys;
-    const char         *material = w->b->wall_fabric == FABRIC_STONE ? fabric_material(FABRIC_STONE, w->b->id) : "brick_red";
+    const char *material = w->b->wall_fabric == FABRIC_STONE ? fabric_material(FABRIC_STONE, w->b->id) : "brick_red";
     if (count == 0) return;
     const int    slot = cell_part(w->cell, "chimney", material, w->b->heated ? HEAT_FLUE : HEAT_PASSIVE);
     const double d[2] = {w->ridge[1][0] - w->ridge[0][0], w->ridge[1][1] - w->ridge[0][1]}, length = hypot(d[0], d[1]);
     const double along[2] = {length > 0.01 ? d[0] / length : 1, length > 0.01 ? d[1] / length : 0};
     for (int k = 0; k < count; k++) {
         /* at the ends of the ridge, a metre inside of them, and evenly between */
-        const double from = fmin(1.4, 0.5 * length), share = count > 1 ? (double)k / (count - 1) : record_random(w->b->id, 5);
-        const double u = length > 2.8 ? from + share * (length - 2 * from) : (k + 0.5) * length / count + (k - 0.5 * (count - 1)) * 1.0;
+        const double from = fmin(1.4, 0.5 * length),
+                     share = count > 1 ? (double)k / (count - 1) : record_random(w->b->id, 5);
+        const double u = length > 2.8 ? from + share * (length - 2 * from)
+                                      : (k + 0.5) * length / count + (k - 0.5 * (count - 1)) * 1.0;
         const double at[2] = {w->ridge[0][0] + u * along[0], w->ridge[0][1] + u * along[1]};
         cell_box(w->cell, slot, at, along, 0.32, 0.28, w->ridge_top_m - 0.9, w->ridge_top_m + over_m);
     }

@@ -4,7 +4,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { parts_enough = 60000, triangles_enough = 4000000 }; /* a cell with more is several models */
+enum {
+    parts_enough = 60000, /* a cell with more is several models */
+    triangles_enough = 4000000,
+    items_most = 1 << 25, /* buildings, points and pieces of lines */
+    run_most = 256,       /* pieces of a line made at once */
+};
 
 typedef enum ItemKind { ITEM_BUILDING, ITEM_PIECE, ITEM_POINT } ItemKind;
 
@@ -29,6 +34,10 @@ static int item_order(const void *a, const void *b)
 
 static Status add_item(Items *items, double x_m, double y_m, int kind, int number, int piece)
 {
+    if (items->count == items_most) {
+        log_error("scenery: more than %d buildings, points and pieces of lines; take a smaller area", items_most);
+        return STATUS_BAD_VALUE;
+    }
     if (items->count == items->room) {
         const int wanted = items->room ? 2 * items->room : 256;
         Item     *larger = realloc(items->item, (size_t)wanted * sizeof *larger);
@@ -53,6 +62,18 @@ static Status list_items(Items *items, const Culture *c)
             }
         status = add_item(items, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), ITEM_BUILDING, n, 0);
     }
+    for (int n = 0; n < c->points && status == STATUS_OK; n++)
+        status = add_item(items, c->point[n].x_m, c->point[n].y_m, ITEM_POINT, n, 0);
+    for (int n = 0; n < c->lines && status == STATUS_OK; n++) {
+        const int  pieces = line_pieces(c, &c->line[n]);
+        LineCursor at = {0};
+        for (int k = 0; k < pieces && status == STATUS_OK; k++) {
+            double xy_m[2];
+            line_piece_middle(xy_m, &at, c, &c->line[n], k);
+            status = add_item(items, xy_m[0], xy_m[1], ITEM_PIECE, n, k);
+        }
+    }
+    if (status != STATUS_OK) return status;
     qsort(items->item, (size_t)items->count, sizeof *items->item, item_order);
     return status;
 }
@@ -111,25 +132,41 @@ static Status put_model(CellsMade *made, CellMesh *cell, const Item *at, const d
     return STATUS_OK;
 }
 
-static double base_of(const Culture *c, const Item *item, double otherwise_m)
+/* The height of a cell's origin: the lowest base in it, else the ground in its middle. */
+static double height_of_cell(const Culture *c, const Item *item, int count, const double xy_m[2],
+                             SceneryGround *ground_m, void *user)
 {
-    return item->kind == ITEM_BUILDING ? (double)c->building[item->number].base_m : otherwise_m;
+    double z_m = INFINITY;
+    for (int k = 0; k < count; k++) {
+        if (item[k].kind == ITEM_BUILDING) z_m = fmin(z_m, (double)c->building[item[k].number].base_m);
+        if (item[k].kind == ITEM_POINT) z_m = fmin(z_m, (double)c->point[item[k].number].base_m);
+    }
+    if (!isfinite(z_m) && ground_m) z_m = ground_m(user, xy_m[0], xy_m[1]);
+    return isfinite(z_m) ? z_m : 0;
 }
 
 /* Items first .. first + count - 1 are of one cell. */
 static Status make_cell(CellsMade *made, const Culture *c, const Item *item, int count, SceneryGround *ground_m,
                         void *user)
 {
-    double origin[3] = {(item->i + 0.5) * scenery_cell_m, (item->j + 0.5) * scenery_cell_m, INFINITY};
-    for (int k = 0; k < count; k++) origin[2] = fmin(origin[2], base_of(c, &item[k], INFINITY));
-    if (!isfinite(origin[2])) origin[2] = 0;
-    CellMesh cell = {0};
-    Status   status = STATUS_OK;
-    int      number = 0;
-    for (int k = 0; k < count && status == STATUS_OK; k++) {
+    double origin[3] = {(item->i + 0.5) * scenery_cell_m, (item->j + 0.5) * scenery_cell_m, 0};
+    origin[2] = height_of_cell(c, item, count, origin, ground_m, user);
+    const WorksGround ground = {ground_m, user, {origin[0], origin[1], origin[2]}};
+    CellMesh          cell = {0};
+    Status            status = STATUS_OK;
+    int               number = 0;
+    for (int k = 0, next; k < count && status == STATUS_OK; k = next) {
+        next = k + 1;
         if (item[k].kind == ITEM_BUILDING)
             building_make(&cell, c, &c->building[item[k].number], origin, ground_m, user);
-        if (cell.model.part_count > parts_enough || cell.model.triangle_count > triangles_enough || k + 1 == count ||
+        if (item[k].kind == ITEM_POINT) point_make(&cell, &c->point[item[k].number], origin);
+        if (item[k].kind == ITEM_PIECE) {
+            while (next < count && next - k < run_most && item[next].kind == ITEM_PIECE &&
+                   item[next].number == item[k].number && item[next].piece == item[k].piece + next - k)
+                next++;
+            line_make(&cell, c, &c->line[item[k].number], item[k].piece, next - k, &ground);
+        }
+        if (cell.model.part_count > parts_enough || cell.model.triangle_count > triangles_enough || next == count ||
             cell.status != STATUS_OK)
             status = put_model(made, &cell, item, origin, number++);
     }

@@ -44,9 +44,9 @@ void roof_plan_free(RoofPlan *plan);
 enum { cell_slots = 24 };
 
 typedef struct CellMesh {
-    Model  model;
-    int    vertex_room, triangle_room, part_room, id_room, pending_room, pendings;
-    Status status;
+    Model     model;
+    int       vertex_room, triangle_room, part_room, id_room, pending_room, pendings;
+    Status    status;
     uint64_t *id; /* [model.part_count]: of its record */
     /* of the record being made: its parts and their triangles, in any order */
     uint64_t  record;
@@ -57,8 +57,8 @@ typedef struct CellMesh {
 
 void cell_begin(CellMesh *cell, uint64_t id);
 /* The slot of a part of this name, material and role in the record being made. */
-int cell_part(CellMesh *cell, const char *name, const char *material, HeatRole role);
-void cell_end(CellMesh *cell);
+int      cell_part(CellMesh *cell, const char *name, const char *material, HeatRole role);
+void     cell_end(CellMesh *cell);
 uint32_t cell_vertex(CellMesh *cell, const double p[3], const double n[3]);
 void     cell_triangle(CellMesh *cell, int slot, uint32_t a, uint32_t b, uint32_t c);
 /* A flat polygon, counter-clockwise seen from outside; nothing when it has no area. */
@@ -69,6 +69,27 @@ void cell_prism(CellMesh *cell, int slot, const double (*p)[2], int n, double z0
 void cell_box(CellMesh *cell, int slot, const double middle[2], const double along[2], double half_along,
               double half_across, double z0, double z1);
 void cell_mesh_free(CellMesh *cell);
+
+/* ---- solids of works (scenery_solids.c) ----------------------------------------------------------- */
+
+/* A place on a line: left: horizontal, to the left of its way, longer than 1 where the line turns (mitred). */
+typedef struct Station {
+    double p[3], left[2];
+} Station;
+
+/* A rectangle across a line: its middle to the left, half its width, from low to high. */
+typedef struct Section {
+    double across_m, half_m, low_m, high_m;
+} Section;
+
+/* A closed band along n >= 2 stations. */
+void cell_sweep(CellMesh *cell, int slot, const Station *station, int n, const Section *of);
+/* A bar of square section between two points. */
+void cell_bar(CellMesh *cell, int slot, const double from[3], const double to[3], double half_m);
+/* A body of revolution about an upright axis, or an elliptic one: radius (in units of half, along the heading and
+ * across) and height of a meridian from the axis at the bottom to the axis at the top; sides <= 64. */
+void cell_round(CellMesh *cell, int slot, const double middle[2], const double half[2], double heading_rad,
+                const double (*rz)[2], int n, int sides);
 /* Makes the model: parts in the order of their records. */
 Status cell_take(Model *out, uint64_t **id, CellMesh *cell, const char *name);
 
@@ -88,14 +109,14 @@ typedef struct BuildingWork {
     const Building *b;
     CellMesh       *cell;
     int             n;
-    double (*p)[2]; /* outline in the cell's plane */
-    double base_m;  /* in the cell's height */
-    double top_m;   /* of the walls' upright part over the base: what roofs leave */
-    double skirt_m; /* how far walls go into the ground */
-    int    wall, roof;
-    SceneryGround *ground_m;   /* in ENU */
+    double (*p)[2];         /* outline in the cell's plane */
+    double         base_m;  /* in the cell's height */
+    double         top_m;   /* of the walls' upright part over the base: what roofs leave */
+    double         skirt_m; /* how far walls go into the ground */
+    int            wall, roof;
+    SceneryGround *ground_m; /* in ENU */
     void          *user;
-    double         origin[3]; /* of the cell in ENU */
+    double         origin[3];                /* of the cell in ENU */
     double         ridge[2][2], ridge_top_m; /* the highest line of the roof, for chimneys */
 } BuildingWork;
 
@@ -105,5 +126,30 @@ void building_roof(BuildingWork *w);
 void building_walls(BuildingWork *w);
 void building_make(CellMesh *cell, const Culture *culture, const Building *b, const double origin[3],
                    SceneryGround *ground_m, void *user);
+
+/* ---- works (scenery_points.c, scenery_lines.c) ---------------------------------------------------- */
+
+void cell_pole(CellMesh *cell, int slot, const double at[3], double high_m, double radius_m);
+void cell_lattice(CellMesh *cell, int slot, const double at[3], double high_m, double low_half_m, double top_half_m);
+void point_make(CellMesh *cell, const CulturePoint *point, const double origin[3]);
+
+/* Ground under works. */
+typedef struct WorksGround {
+    SceneryGround *ground_m;
+    void          *user;
+    double         origin[3]; /* of the cell in ENU */
+} WorksGround;
+
+/* Into how many pieces a line is cut; 0: nothing of it is seen. Piece k is between stations k and k + 1. */
+int line_pieces(const Culture *culture, const CultureLine *line);
+/* Where a walk along a line is: at this corner, with so many pieces before it; zeroes: at its beginning. */
+typedef struct LineCursor {
+    int corner, before;
+} LineCursor;
+
+void line_piece_middle(double xy_m[2], LineCursor *at, const Culture *culture, const CultureLine *line, int piece);
+/* Makes pieces first .. first + count - 1 of a line. */
+void line_make(CellMesh *cell, const Culture *culture, const CultureLine *line, int first, int count,
+               const WorksGround *ground);
 
 #endif

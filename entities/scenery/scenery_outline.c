@@ -33,17 +33,20 @@ typedef struct Clip {
     int *before, *after; /* ring of what is left */
 } Clip;
 
-/* Whether no other corner of the ring lies in or on a triangle. Only corners that do not turn left can. */
+/* Whether no other corner of the ring lies in or on a triangle; one within a tenth of a micrometre of the cut (from b
+ * to a) lies on it, so that what is left does not end as a line. */
 static bool is_free(const Clip *c, int a, int v, int b)
 {
     const double(*p)[2] = c->p;
+    const double near_m2 = -1e-7 * sqrt(square_m2(p[a], p[b]));
     const double low_x = fmin(p[a][0], fmin(p[v][0], p[b][0])), high_x = fmax(p[a][0], fmax(p[v][0], p[b][0]));
     const double low_y = fmin(p[a][1], fmin(p[v][1], p[b][1])), high_y = fmax(p[a][1], fmax(p[v][1], p[b][1]));
     for (int o = c->after[b]; o != a; o = c->after[o]) {
         const double *q = p[o];
-        if (q[0] < low_x || q[0] > high_x || q[1] < low_y || q[1] > high_y) continue;
+        if (q[0] < low_x - 1e-7 || q[0] > high_x + 1e-7 || q[1] < low_y - 1e-7 || q[1] > high_y + 1e-7) continue;
         if (square_m2(q, p[a]) == 0 || square_m2(q, p[v]) == 0 || square_m2(q, p[b]) == 0) continue;
-        if (turn_m2(p[a], p[v], q) >= 0 && turn_m2(p[v], p[b], q) >= 0 && turn_m2(p[b], p[a], q) >= 0) return false;
+        if (turn_m2(p[a], p[v], q) >= 0 && turn_m2(p[v], p[b], q) >= 0 && turn_m2(p[b], p[a], q) >= near_m2)
+            return false;
     }
     return true;
 }
@@ -68,11 +71,11 @@ static int next_ear(const Clip *c, int from, int left, bool *clean)
 
 bool outline_triangulate(int (*triangle)[3], const double (*p)[2], int n)
 {
-    int   own[2][64];
-    int  *large = n > 64 ? malloc(2 * (size_t)n * sizeof *large) : NULL;
-    Clip  c = {p, n > 64 ? large : own[0], n > 64 ? large + n : own[1]};
-    bool  clean = true;
-    int   made = 0;
+    int  own[2][64];
+    int *large = n > 64 ? malloc(2 * (size_t)n * sizeof *large) : NULL;
+    Clip c = {p, n > 64 ? large : own[0], n > 64 ? large + n : own[1]};
+    bool clean = true;
+    int  made = 0;
     if (n < 3 || (n > 64 && !large)) return false;
     for (int k = 0; k < n; k++) c.before[k] = (k + n - 1) % n, c.after[k] = (k + 1) % n;
     for (int left = n, at = 0; left > 3; left--) {

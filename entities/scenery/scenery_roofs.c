@@ -35,11 +35,11 @@ static void face_of(BuildingWork *w, int slot, const double (*node)[3], const in
     if (p != own) free(p);
 }
 
-/* The upright strip under the line from a to b, thick_m deep; outside is to the right of its way. */
-static void strip(BuildingWork *w, int slot, const double a[2], const double b[2], double za, double zb, double thick_m)
+/* The upright strip between two lines over a and b; outside is to the right of its way. */
+static void strip(BuildingWork *w, int slot, const double a[2], const double b[2], const double low[2],
+                  const double high[2])
 {
-    const double p[4][3] = {
-        {a[0], a[1], za - thick_m}, {b[0], b[1], zb - thick_m}, {b[0], b[1], zb}, {a[0], a[1], za}};
+    const double p[4][3] = {{a[0], a[1], low[0]}, {b[0], b[1], low[1]}, {b[0], b[1], high[1]}, {a[0], a[1], high[0]}};
     cell_face(w->cell, slot, p, 4);
 }
 
@@ -69,7 +69,8 @@ static void slab(BuildingWork *w, const double (*p)[2], const Slope *s, double t
     sheet(w, w->roof, p, w->n, s, thick_m, true);
     for (int k = 0; k < w->n; k++) {
         const double *a = p[k], *b = p[(k + 1) % w->n];
-        strip(w, w->roof, a, b, height_on(s, a), height_on(s, b), thick_m);
+        const double  high[2] = {height_on(s, a), height_on(s, b)}, low[2] = {high[0] - thick_m, high[1] - thick_m};
+        strip(w, w->roof, a, b, low, high);
     }
 }
 
@@ -135,7 +136,8 @@ static void flat_roof(BuildingWork *w, Outline spare)
     double inside[2];
     inner_place(inside, w);
     const double top_m = parapet ? ridge_m : eaves_m;
-    const double deck_m = !parapet || ridge_m - eaves_m >= least_parapet_m ? eaves_m : ridge_m - fmin(0.35, ridge_m / 3);
+    const double deck_m =
+        !parapet || ridge_m - eaves_m >= least_parapet_m ? eaves_m : ridge_m - fmin(0.35, ridge_m / 3);
     ridge_at(w, inside, inside, z + deck_m);
     if (parapet) {
         const Slope deck = {.z0 = z + deck_m};
@@ -232,24 +234,28 @@ static void find_ridge(BuildingWork *w, const RoofPlan *plan, double z)
 static void slab_of_plan(BuildingWork *w, const RoofPlan *plan, const bool *gable, double z0, double per_m,
                          double thick_m)
 {
+    const double under_z0 = z0 - thick_m;
     for (int f = 0; f < plan->faces; f++) {
         const int *index = plan->index + plan->first[f], count = plan->first[f + 1] - plan->first[f];
         const int  edge = plan->edge[f];
         if (edge < 0 || !gable || !gable[edge]) {
             face_of(w, w->roof, (const double(*)[3])plan->node, index, count, z0, per_m, false);
-            face_of(w, w->roof, (const double(*)[3])plan->node, index, count, z0 - thick_m, per_m, true);
+            face_of(w, w->roof, (const double(*)[3])plan->node, index, count, under_z0, per_m, true);
             continue;
         }
         for (int k = 0; k < count; k++) {
+            /* from right to left over the gable, seen from outside */
             const int a = index[k], b = index[(k + 1) % count];
             if (a == edge && b == (edge + 1) % plan->corners) continue;
-            strip(w, w->roof, plan->node[b], plan->node[a], z0 + per_m * plan->node[b][2],
-                  z0 + per_m * plan->node[a][2], thick_m);
+            const double ta = per_m * plan->node[a][2], tb = per_m * plan->node[b][2];
+            strip(w, w->roof, plan->node[b], plan->node[a], (double[2]){under_z0 + tb, under_z0 + ta},
+                  (double[2]){z0 + tb, z0 + ta});
         }
     }
     for (int k = 0; k < plan->corners; k++)
         if (!gable || !gable[k])
-            strip(w, w->roof, plan->node[k], plan->node[(k + 1) % plan->corners], z0, z0, thick_m);
+            strip(w, w->roof, plan->node[k], plan->node[(k + 1) % plan->corners], (double[2]){under_z0, under_z0},
+                  (double[2]){z0, z0});
 }
 
 /* Which edges end a ridge: with two right corners, shorter than their neighbours, shortest first; of four edges the
@@ -267,9 +273,9 @@ static int choose_gables(bool *gable, const BuildingWork *w)
             const double  u[2] = {a[0] - o[0], a[1] - o[1]}, d[2] = {b[0] - a[0], b[1] - a[1]};
             const double  v[2] = {c[0] - b[0], c[1] - b[1]};
             const double  lu = hypot(u[0], u[1]), ld = hypot(d[0], d[1]), lv = hypot(v[0], v[1]);
-            const bool    right = u[0] * d[1] - u[1] * d[0] > 0.94 * lu * ld && d[0] * v[1] - d[1] * v[0] > 0.94 * ld * lv;
-            const double  along = fabs(cos((double)w->b->ridge_rad) * d[0] + sin((double)w->b->ridge_rad) * d[1]);
-            const bool    ends = n == 4 ? along < 0.7072 * ld : ld <= 1.001 * lu && ld <= 1.001 * lv;
+            const bool right = u[0] * d[1] - u[1] * d[0] > 0.94 * lu * ld && d[0] * v[1] - d[1] * v[0] > 0.94 * ld * lv;
+            const double along = fabs(cos((double)w->b->ridge_rad) * d[0] + sin((double)w->b->ridge_rad) * d[1]);
+            const bool   ends = n == 4 ? along < 0.7072 * ld : ld <= 1.001 * lu && ld <= 1.001 * lv;
             if (!right || !ends || gable[k] || gable[(k + n - 1) % n] || gable[(k + 1) % n]) continue;
             if (ld < best_length) best = k, best_length = ld;
         }
@@ -338,10 +344,10 @@ static bool pyramid_roof(BuildingWork *w)
         const double *a = low[k], *b = low[(k + 1) % n];
         const double  top[3][3] = {{a[0], a[1], z0}, {b[0], b[1], z0}, {apex[0], apex[1], z1}};
         const double  under[3][3] = {
-            {b[0], b[1], z0 - thick_m}, {a[0], a[1], z0 - thick_m}, {apex[0], apex[1], z1 - thick_m}};
+             {b[0], b[1], z0 - thick_m}, {a[0], a[1], z0 - thick_m}, {apex[0], apex[1], z1 - thick_m}};
         cell_face(w->cell, w->roof, top, 3);
         cell_face(w->cell, w->roof, under, 3);
-        strip(w, w->roof, a, b, z0, z0, thick_m);
+        strip(w, w->roof, a, b, (double[2]){z0 - thick_m, z0 - thick_m}, (double[2]){z0, z0});
     }
     lid(w, (double)w->b->eaves_m - 0.5 * thick_m);
     ridge_at(w, apex, apex, z1);

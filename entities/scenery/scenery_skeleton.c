@@ -191,7 +191,8 @@ static bool is_thin(const Front *f, int m)
     return !(area > 0.1 * snap_m * around);
 }
 
-/* The next node of a ring on the way from front a to b, farther than `from_m`; b when there is none. Returns how far. */
+/* The next node of a ring on the way from front a to b, farther than `from_m`; b when there is none. Returns how far.
+ */
 static double next_on_way(int *next, const Front *f, int m, int a, int b, double from_m)
 {
     const double d[2] = {f[b].p[0] - f[a].p[0], f[b].p[1] - f[a].p[1]}, length_m = hypot(d[0], d[1]);
@@ -209,8 +210,8 @@ static double next_on_way(int *next, const Front *f, int m, int a, int b, double
  * sides of a ridge are the same pieces), or a flat top. */
 static void finish(Skeleton *s, const Ring *ring)
 {
-    Front    *f = &s->front[ring->first];
-    const int m = ring->count;
+    Front     *f = &s->front[ring->first];
+    const int  m = ring->count;
     const bool thin = m < 3 || is_thin(f, m);
     const int  top = thin ? -1 : s->n + s->tops++;
     for (int k = 0; k < m; k++) {
@@ -276,7 +277,8 @@ static void tidy(Skeleton *s)
         const Link l = {s->link[k].face, s->same[s->link[k].from], s->same[s->link[k].to]};
         if (l.from == l.to) continue;
         int back = 0;
-        while (back < kept && (s->link[back].face != l.face || s->link[back].from != l.to || s->link[back].to != l.from))
+        while (back < kept &&
+               (s->link[back].face != l.face || s->link[back].from != l.to || s->link[back].to != l.from))
             back++;
         if (back < kept) s->link[back] = s->link[--kept];
         else s->link[kept++] = l;

@@ -33,9 +33,9 @@ typedef struct Openings {
 } Openings;
 
 static const Openings openings[BUILDING_USES] = {
-    [BUILDING_HOUSE] = {1.1, 3.2, 1.0, 2.1, 0},   [BUILDING_FLATS] = {1.5, 3.2, 1.4, 2.2, 0},
-    [BUILDING_BARN] = {0, 0, 3.4, 3.6, 0},        [BUILDING_SHED] = {0, 0, 2.3, 2.0, 0},
-    [BUILDING_HALL] = {0, 0, 4.0, 4.2, 9},        [BUILDING_CHURCH] = {1.1, 3.6, 1.8, 2.8, 0},
+    [BUILDING_HOUSE] = {1.1, 3.2, 1.0, 2.1, 0}, [BUILDING_FLATS] = {1.5, 3.2, 1.4, 2.2, 0},
+    [BUILDING_BARN] = {0, 0, 3.4, 3.6, 0},      [BUILDING_SHED] = {0, 0, 2.3, 2.0, 0},
+    [BUILDING_HALL] = {0, 0, 4.0, 4.2, 9},      [BUILDING_CHURCH] = {1.1, 3.6, 1.8, 2.8, 0},
 };
 
 static void at_wall(double p[3], const BuildingWork *w, const Facade *f, double u, double v, double in_m)
@@ -171,8 +171,7 @@ static void make_rim(const BuildingWork *w, const Facade *f, const uint32_t corn
     cell_triangle(c, s, corner[1], corner[2], g[nv * nu - 1]);
     for (int j = nv - 1; j > 0; j--) cell_triangle(c, s, corner[1], g[j * nu + nu - 1], g[(j - 1) * nu + nu - 1]);
     cell_triangle(c, s, corner[2], corner[3], g[(nv - 1) * nu]);
-    for (int i = 0; i < nu - 1; i++)
-        cell_triangle(c, s, corner[2], g[(nv - 1) * nu + i], g[(nv - 1) * nu + i + 1]);
+    for (int i = 0; i < nu - 1; i++) cell_triangle(c, s, corner[2], g[(nv - 1) * nu + i], g[(nv - 1) * nu + i + 1]);
     cell_triangle(c, s, corner[3], corner[0], g[0]);
     for (int j = 0; j < nv - 1; j++) cell_triangle(c, s, corner[3], g[j * nu], g[(j + 1) * nu]);
 }
@@ -198,7 +197,7 @@ static void make_grid(BuildingWork *w, Facade *f)
     const int    frame = cell_part(w->cell, "window", frame_material(w->b->id), HEAT_PASSIVE);
     const int    pane = cell_part(w->cell, "window", "glass_window", w->b->heated ? HEAT_WINDOW : HEAT_PASSIVE);
     const int    door = cell_part(w->cell, "door", w->b->use == BUILDING_HALL ? "sheet_white" : door_material(w->b->id),
-                                  w->b->heated ? HEAT_DWELLING : HEAT_PASSIVE);
+                               w->b->heated ? HEAT_DWELLING : HEAT_PASSIVE);
     const double normal[3] = {f->along[1], -f->along[0], 0};
     const int    nu = f->lines, nv = f->rows;
     double       p[3];
@@ -226,7 +225,8 @@ static void make_grid(BuildingWork *w, Facade *f)
         }
 }
 
-/* The wall with the door: the longest whose ground is near the floor's height; of a church the shortest that holds it. */
+/* The wall with the door: the longest whose ground is near the floor's height; of a church the shortest that holds it.
+ */
 static int front_of(const BuildingWork *w)
 {
     int    best = 0;

@@ -33,13 +33,14 @@ static inline Scenery scenery_of(const Culture *c)
     return s;
 }
 
-/* Parts first .. end - 1 as a model of one part: what must be closed. Its arrays are the model's; only triangle_part and
- * part are its own. */
+/* Parts first .. end - 1 as a model of one part: what must be closed. Its arrays are the model's; only triangle_part
+ * and part are its own. */
 static inline Model whole(const Model *m, int first, int end)
 {
     Model one = *m;
     one.triangle = m->triangle + m->part[first].first_triangle;
-    one.triangle_count = m->part[end - 1].first_triangle + m->part[end - 1].triangle_count - m->part[first].first_triangle;
+    one.triangle_count =
+        m->part[end - 1].first_triangle + m->part[end - 1].triangle_count - m->part[first].first_triangle;
     one.part_count = 1;
     one.part = calloc(1, sizeof *one.part);
     one.triangle_part = calloc((size_t)one.triangle_count, sizeof *one.triangle_part);

@@ -12,10 +12,28 @@ static void check_closed(const Scenery *s)
         for (int first = 0, end; first < m->part_count; first = end) {
             const uint64_t *id = s->part_of + s->part_first[k];
             for (end = first + 1; end < m->part_count && id[end] == id[first];) end++;
-            Model one = whole(m, first, end);
+            Model        one = whole(m, first, end);
             const Status status = model_validate(&one);
-            if (status != STATUS_OK) print_message("building %llu\n", (unsigned long long)id[first]);
-            CHECK(status == STATUS_OK);
+            if (status != STATUS_OK) {
+                print_message("building %llu\n", (unsigned long long)id[first]);
+                if (getenv("DUMP"))
+                    for (int t = 0; t < 3 * one.triangle_count; t++) {
+                        const double *a = m->vertex[one.triangle[t / 3][t % 3]],
+                                     *b = m->vertex[one.triangle[t / 3][(t + 1) % 3]];
+                        int bal = 0;
+                        for (int u = 0; u < 3 * one.triangle_count; u++) {
+                            const double *c = m->vertex[one.triangle[u / 3][u % 3]],
+                                         *d = m->vertex[one.triangle[u / 3][(u + 1) % 3]];
+                            bal += !memcmp(a, c, 24) && !memcmp(b, d, 24);
+                            bal -= !memcmp(a, d, 24) && !memcmp(b, c, 24);
+                        }
+                        if (bal)
+                            print_message("%s: %.9f %.9f %.9f -> %.9f %.9f %.9f\n",
+                                          m->part[m->triangle_part[m->part[first].first_triangle + t / 3]].name, a[0],
+                                          a[1], a[2], b[0], b[1], b[2]);
+                    }
+            }
+            if (!getenv("DUMP")) CHECK(status == STATUS_OK);
             whole_free(&one);
         }
     }
@@ -29,8 +47,8 @@ static void every_roof_closes_every_outline(void **state)
     static const double tee[8][2] = {{0, 0}, {18, 0}, {18, 6}, {12, 6}, {12, 14}, {6, 14}, {6, 6}, {0, 6}};
     static const double triangle[3][2] = {{0, 0}, {12, 1}, {4, 9}};
     static const double square[4][2] = {{0, 0}, {9, 0}, {9, 9}, {0, 9}};
-    static const double cross[12][2] = {{5, 0}, {10, 0}, {10, 5}, {15, 5}, {15, 10}, {10, 10},
-                                        {10, 15}, {5, 15}, {5, 10}, {0, 10}, {0, 5}, {5, 5}};
+    static const double cross[12][2] = {{5, 0},   {10, 0}, {10, 5}, {15, 5}, {15, 10}, {10, 10},
+                                        {10, 15}, {5, 15}, {5, 10}, {0, 10}, {0, 5},   {5, 5}};
     static const struct {
         const double (*p)[2];
         int n;
@@ -47,7 +65,7 @@ static void every_roof_closes_every_outline(void **state)
                 assert_int_equal(s.models, 1);
                 check_closed(&s);
                 const Model *m = &s.model[0];
-                double high = 0;
+                double       high = 0;
                 for (int t = 0; t < m->triangle_count; t++)
                     for (int k = 0; k < 3 && strcmp(m->part[m->triangle_part[t]].name, "chimney"); k++)
                         high = fmax(high, -m->vertex[m->triangle[t][k]][2]);
@@ -77,7 +95,8 @@ static int random_outline(double (*p)[2], uint64_t seed)
         p[n][0] = 0, p[n++][1] = 0;
         for (int k = 0; k < wings; k++) {
             /* whole metres in kind 2 and 3: many events at once */
-            const double u = 2 + 8 * random_uniform(seed, 2, 0, (uint64_t)k), v = 4 + 12 * random_uniform(seed, 3, 0, (uint64_t)k);
+            const double u = 2 + 8 * random_uniform(seed, 2, 0, (uint64_t)k),
+                         v = 4 + 12 * random_uniform(seed, 3, 0, (uint64_t)k);
             const double wide = kind > 1 ? 1 + floor(u) : u, high = kind > 1 ? floor(v) : v;
             p[n][0] = x, p[n++][1] = -high;
             x += wide;
@@ -111,7 +130,7 @@ static void any_outline_is_closed_and_sound(void **state)
     Scenery s = scenery_of(&c);
     check_closed(&s);
     double least = INFINITY;
-    int flat = 0;
+    int    flat = 0;
     for (int k = 0; k < s.models; k++) {
         const Model *m = &s.model[k];
         for (int t = 0; t < m->triangle_count; t++) {
@@ -120,18 +139,22 @@ static void any_outline_is_closed_and_sound(void **state)
             v3_sub(v, m->vertex[m->triangle[t][2]], m->vertex[m->triangle[t][0]]);
             v3_cross(n, u, v);
             const double area = 0.5 * sqrt(v3_dot(n, n));
-            if (!(area > 1e-9)) print_message("model %s part %s area %g\n", m->name, m->part[m->triangle_part[t]].name, area);
+            if (!(area > 1e-9))
+                print_message("model %s part %s area %g\n", m->name, m->part[m->triangle_part[t]].name, area);
             least = fmin(least, area);
         }
-        const uint64_t id = s.part_of[s.part_first[k]] - 1;
+        const uint64_t  id = s.part_of[s.part_first[k]] - 1;
         const Building *b = NULL;
-        for (int q = 0; q < c.buildings && !b; q++) if (c.building[q].id == id + 1) b = &c.building[q];
+        for (int q = 0; q < c.buildings && !b; q++)
+            if (c.building[q].id == id + 1) b = &c.building[q];
         double high = 0;
         for (int t = 0; t < m->triangle_count; t++)
             for (int q = 0; q < 3 && !strcmp(m->part[m->triangle_part[t]].name, "roof"); q++)
                 high = fmax(high, -m->vertex[m->triangle[t][q]][2]);
         if (b->roof && b->use != BUILDING_HALL && b->ridge_m - b->eaves_m > 0.1F && high < b->ridge_m - 1e-3F) {
-            if (flat++ < 10) print_message("flat: seed %d roof %d corners %d: %g of %g\n", (int)id, b->roof, b->corners, high, (double)b->ridge_m);
+            if (flat++ < 10)
+                print_message("flat: seed %d roof %d corners %d: %g of %g\n", (int)id, b->roof, b->corners, high,
+                              (double)b->ridge_m);
         }
     }
     print_message("least area %g; flat instead %d\n", least, flat);
