@@ -79,14 +79,12 @@ static void use_normals(SceneryHeat *h, const SceneryObject *o)
 static Status number_parts(SceneryHeat *h)
 {
     const Scenery *s = h->scenery;
-    const int      facets = h->config.heat.facets;
     SceneryWalls  *w = &h->walls;
     bool          *needed = calloc((size_t)s->models + 1, sizeof *needed);
     Status         status = needed ? STATUS_OK : STATUS_NO_MEMORY;
     h->part_first = calloc((size_t)s->models + 1, sizeof *h->part_first);
     h->mover_of = malloc(((size_t)s->objects + 1) * sizeof *h->mover_of);
-    w->wall = calloc(scenery_most_walls, sizeof *w->wall);
-    if (!h->part_first || !h->mover_of || !w->wall) status = STATUS_NO_MEMORY;
+    if (!h->part_first || !h->mover_of) status = STATUS_NO_MEMORY;
     for (int m = 0; m < s->models && status == STATUS_OK; m++)
         h->part_first[m + 1] = h->part_first[m] + s->model[m].part_count;
     if (status == STATUS_OK) h->part_wall = calloc((size_t)h->part_first[s->models] + 1, sizeof *h->part_wall);
@@ -97,7 +95,6 @@ static Status number_parts(SceneryHeat *h)
     }
     for (int k = 0; k < s->movers && status == STATUS_OK; k++) h->mover_of[s->mover[k].object] = k;
     if (status == STATUS_OK) status = find_walls(h, needed);
-    w->columns = facets * facets + heat_ups;
     for (int i = 0; i < w->count && status == STATUS_OK; i++) {
         w->wall[i].used = calloc((size_t)w->columns, sizeof *w->wall[i].used);
         if (!w->wall[i].used) status = STATUS_NO_MEMORY;
@@ -110,7 +107,7 @@ static Status number_parts(SceneryHeat *h)
 
 /* ---- life -------------------------------------------------------------------------------------- */
 
-Status scenery_heat_create(SceneryHeat **out, const SceneryHeatConfig *config, const Scenery *scenery)
+static Status create(SceneryHeat **out, const SceneryHeatConfig *config, const Scenery *scenery)
 {
     const HeatConfig *c = &config->heat;
     const double      steps = c->spin_up_s / c->step_s;
@@ -129,16 +126,46 @@ Status scenery_heat_create(SceneryHeat **out, const SceneryHeatConfig *config, c
     h->ground = *config->ground;
     h->config.constructions = &h->constructions, h->config.ground = &h->ground;
     h->walls.config = h->states.config = &h->config;
+    h->walls.columns = c->facets * c->facets + heat_ups;
     h->states.scenery = scenery;
-    Status status = number_parts(h);
-    if (status == STATUS_OK) status = scenery_walls_open(&h->walls, config->materials);
-    if (status == STATUS_OK) status = scenery_states_open(&h->states, &h->walls);
-    if (status != STATUS_OK) {
-        scenery_heat_destroy(h);
-        return status;
+    h->walls.wall = calloc(scenery_most_walls, sizeof *h->walls.wall);
+    if (!h->walls.wall) {
+        free(h);
+        return STATUS_NO_MEMORY;
     }
     *out = h;
     return STATUS_OK;
+}
+
+static Status open_all(SceneryHeat **out, SceneryHeat *h, Status status)
+{
+    if (status == STATUS_OK) status = scenery_walls_open(&h->walls, h->config.materials);
+    if (status == STATUS_OK) status = scenery_states_open(&h->states, &h->walls);
+    if (status == STATUS_OK) *out = h;
+    else scenery_heat_destroy(h);
+    return status;
+}
+
+Status scenery_heat_create(SceneryHeat **out, const SceneryHeatConfig *config, const Scenery *scenery)
+{
+    SceneryHeat *h;
+    const Status status = create(&h, config, scenery);
+    return status == STATUS_OK ? open_all(out, h, number_parts(h)) : status;
+}
+
+Status scenery_heat_wall(SceneryHeat **out, const SceneryHeatConfig *config, int construction, int material)
+{
+    static const Scenery none;
+    SceneryHeat         *h;
+    Status               status = create(&h, config, &none);
+    if (status != STATUS_OK) return status;
+    SceneryWall *wall = h->walls.wall;
+    *wall = (SceneryWall){.row = construction, .material = material};
+    wall->used = malloc((size_t)h->walls.columns * sizeof *wall->used);
+    if (!wall->used) status = STATUS_NO_MEMORY;
+    for (int c = 0; wall->used && c < h->walls.columns; c++) wall->used[c] = true;
+    h->walls.count = 1;
+    return open_all(out, h, status);
 }
 
 void scenery_heat_destroy(SceneryHeat *h)
@@ -166,7 +193,7 @@ static Status blend_walls(SceneryTemps *t, const SceneryHeat *h, double unix_s, 
     float              *face_k = arena_alloc(arena, faces + 1, sizeof *face_k);
     if (!face_k) return STATUS_NO_MEMORY;
     for (size_t i = 0; i < faces; i++) face_k[i] = a->face_k[i] + (float)share * (b->face_k[i] - a->face_k[i]);
-    t->face_k = face_k;
+    t->face_k = face_k, t->share = share;
     t->air_k = a->air_k + share * (b->air_k - a->air_k);
     if (!h->config.shadow) return STATUS_OK;
     t->sun_k = arena_alloc(arena, (size_t)w->count + 1, sizeof *t->sun_k);
@@ -183,7 +210,7 @@ Status scenery_temps_at(SceneryTemps **out, SceneryHeat *h, double unix_s, Arena
     if (!(fabs(unix_s) < 1e11)) return STATUS_BAD_VALUE;
     SceneryTemps *t = arena_alloc(arena, 1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
-    *t = (SceneryTemps){.heat = h};
+    *t = (SceneryTemps){.heat = h, .unix_s = unix_s};
     Status status = scenery_states_advance(&h->states, &h->walls, unix_s);
     scenery_walls_advance(&h->walls, unix_s);
     if (status == STATUS_OK) status = blend_walls(t, h, unix_s, arena);
@@ -220,23 +247,56 @@ static double taken_at(const SceneryTemps *t, int wall, const SceneryObject *o, 
     return all > 1e-3 ? fmin(lost / (255 * all), 1) : 0;
 }
 
-static double wall_k(const SceneryTemps *t, int wall, const SceneryObject *o, const double p_body[3],
-                     const double n_enu[3])
+/* In the sun; shade_k: in its shade. */
+static double facets_k(double *shade_k, const SceneryTemps *t, int wall, const double n_enu[3])
 {
     const SceneryWalls *w = &t->heat->walls;
     const int           facets = t->heat->config.heat.facets;
     const float        *k = t->face_k + (size_t)wall * (size_t)w->columns;
     double              share[2];
     const float        *at = k + scenery_facet(share, facets, n_enu);
-    const double low = (double)at[0] + share[0] * (double)(at[1] - at[0]),
+    const double        low = (double)at[0] + share[0] * (double)(at[1] - at[0]),
                  high = (double)at[facets] + share[0] * (double)(at[facets + 1] - at[facets]);
-    const double sun_k = low + share[1] * (high - low);
-    if (!t->sun_k) return sun_k;
     const double up = clamp(n_enu[2], 0, 1) * (heat_ups - 1);
     const int    node = (int)fmin(up, heat_ups - 2);
     const float *shade = k + facets * facets + node;
-    const double shade_k = (double)shade[0] + (up - node) * (double)(shade[1] - shade[0]);
-    return sun_k + taken_at(t, wall, o, p_body, n_enu) * (shade_k - sun_k);
+    *shade_k = (double)shade[0] + (up - node) * (double)(shade[1] - shade[0]);
+    return low + share[1] * (high - low);
+}
+
+void scenery_wall_seen(WallSeen *out, const SceneryTemps *t, const double n_enu[3], double taken)
+{
+    const SceneryHeat  *h = t->heat;
+    const SceneryWalls *w = &h->walls;
+    const WallsTable   *a = &w->table[0], *b = &w->table[1];
+    double              shade_k, ground_k = 0;
+    GroundWeather       weather;
+    WallFlux            flux;
+    h->config.heat.weather(&weather, t->unix_s, h->config.heat.user);
+    for (int k = about_grass; k <= about_paved; k++)
+        ground_k += 0.5 * (a->about_k[k] + t->share * (b->about_k[k] - a->about_k[k]));
+    const double    sun_k = facets_k(&shade_k, t, 0, n_enu);
+    const WallFace  face = {{n_enu[0], n_enu[1], n_enu[2]}, 1 - taken};
+    const WallPlace place = {&weather, ground_k, w->ground_rho};
+    wall_flux(&flux, &w->wall[0].kind, &place, &face);
+    const double temp_k = sun_k + taken * (shade_k - sun_k);
+    *out = (WallSeen){.temp_k = temp_k,
+                      .behind_k = a->behind_k[0] + t->share * (b->behind_k[0] - a->behind_k[0]),
+                      .air_k = weather.air.temp_k,
+                      .ground_k = ground_k,
+                      .absorbed_w_m2 = flux.absorbed_w_m2,
+                      .direct_w_m2 = weather.direct_w_m2,
+                      .diffuse_w_m2 = weather.diffuse_w_m2,
+                      .longwave_w_m2 = weather.longwave_w_m2,
+                      .film_w_m2k = wall_film_w_m2k(&flux, temp_k, n_enu[2])};
+}
+
+static double wall_k(const SceneryTemps *t, int wall, const SceneryObject *o, const double p_body[3],
+                     const double n_enu[3])
+{
+    double       shade_k;
+    const double sun_k = facets_k(&shade_k, t, wall, n_enu);
+    return t->sun_k ? sun_k + taken_at(t, wall, o, p_body, n_enu) * (shade_k - sun_k) : sun_k;
 }
 
 double scenery_temp_k(const SceneryTemps *t, int object, int part, const double p_body[3], const double n_enu[3])

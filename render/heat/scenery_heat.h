@@ -59,6 +59,14 @@ void   scenery_heat_destroy(SceneryHeat *heat); /* accepts NULL */
 Status scenery_temps_at(SceneryTemps **out, SceneryHeat *heat, double unix_s, Arena *arena);
 size_t scenery_heat_bytes(const SceneryHeat *heat);
 
+/* Without scenery: one construction (of config->constructions) of one material, of all normals. What probes ask. */
+Status scenery_heat_wall(SceneryHeat **out, const SceneryHeatConfig *config, int construction, int material);
+/* It, and what it takes and gives, for a normal of the upper hemisphere. taken: share of the direct sun, all day. */
+typedef struct WallSeen {
+    double temp_k, behind_k, air_k, ground_k, absorbed_w_m2, direct_w_m2, diffuse_w_m2, longwave_w_m2, film_w_m2k;
+} WallSeen;
+void scenery_wall_seen(WallSeen *out, const SceneryTemps *temps, const double n_enu[3], double taken);
+
 /* Temperature of a place of an object's surface, K. part: of its model; p_body: in the model's axes; n_enu: unit,
  * outward. Any number of threads. */
 double scenery_temp_k(const SceneryTemps *temps, int object, int part, const double p_body[3], const double n_enu[3]);

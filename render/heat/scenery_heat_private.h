@@ -33,7 +33,7 @@ typedef struct WallsState {
 
 /* At a time of the grid, or between two. */
 typedef struct WallsTable {
-    double air_k, about_k[about_columns];
+    double air_k, about_k[about_columns], behind_k[scenery_most_walls];
     float *face_k;                                          /* [walls * columns] */
     float  sun_k[scenery_most_walls][heat_day_slots];       /* K now for the direct sun of a slot, per unit cosine */
 } WallsTable;
@@ -113,7 +113,7 @@ struct SceneryHeat {
 
 struct SceneryTemps {
     const SceneryHeat *heat;
-    double             air_k;
+    double             unix_s, share, air_k; /* share: between the walls' tables */
     const float       *face_k;   /* [walls * columns] */
     float             *patch_k;
     int               *first;    /* [states] of patch_k */

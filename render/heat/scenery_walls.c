@@ -173,6 +173,8 @@ static void fill_table(SceneryWalls *w, WallsTable *out)
     for (int i = 0; i < w->count; i++) {
         const SceneryWall *wall = &w->wall[i];
         const size_t       first = (size_t)i * (size_t)w->columns;
+        out->behind_k[i] =
+            wall_behind_k(&wall->kind.of, solar_hour(w, now_s), w->now.day_k, out->air_k, w->now.room_k[i]);
         for (int c = 0; c < w->columns; c++) out->face_k[first + (size_t)c] = (float)w->now.face[first + (size_t)c].temp_k[0];
         fill_unused(w, wall, out->face_k + first);
         for (int age = 0; age < heat_day_slots; age++) {
