@@ -44,10 +44,10 @@ typedef struct Walk {
     int           count;       /* of rays */
     CrowdCounts  *counts;
     /* first hits */
-    const RayEntities *among; /* NULL: all */
-    const int         *index; /* [count]: of the block's rays, as those that among->known is of */
-    uint32_t           item[broad_packet];
-    PartHit            hit[broad_packet];
+    const CrowdAmong *among; /* NULL: all */
+    const int        *index; /* [count]: of the block's rays, as those that among->known_range_m is of */
+    uint32_t          item[broad_packet];
+    PartHit           hit[broad_packet];
     /* any hits */
     uint8_t dark[broad_packet];
 } Walk;
@@ -103,13 +103,12 @@ static void visit_first(void *user, int item)
         until_m[k] = w->rays.limit_m[k];
         if (w->item[k] > (uint32_t)item + 1) until_m[k] = next_up(until_m[k]);
     }
-    const EntityHits *known = w->among ? w->among->known : NULL;
-    if (known && known->entity == item) {
+    if (w->among && w->among->known == item) {
         for (int k = 0; k < w->count; k++) {
-            const double range_m = known->range_m[w->index[k]];
+            const double range_m = w->among->known_range_m[w->index[k]];
             if (!(range_m < until_m[k])) continue;
             w->rays.limit_m[k] = range_m;
-            w->hit[k] = known->hit[w->index[k]];
+            w->hit[k] = w->among->known_hit[w->index[k]];
             w->item[k] = (uint32_t)item + 1;
         }
         return;
@@ -135,7 +134,7 @@ static void visit_first(void *user, int item)
 }
 
 void crowd_first_hits(double *limit_m, uint32_t *item, PartHit *hit, CrowdCounts *counts, const Crowd *crowd,
-                      const double *const o[3], const double *const d[3], int count, const RayEntities *among,
+                      const double *const o[3], const double *const d[3], int count, const CrowdAmong *among,
                       const int *order)
 {
     Walk walk = {.crowd = crowd, .counts = counts, .among = among};

@@ -4,7 +4,8 @@
 #define RENDER_TRACE_VISIBILITY_CROWD_H
 
 #include "render/trace/visibility/broad_phase.h"
-#include "render/trace/visibility/visibility.h"
+#include "render/scene/hits.h"
+#include "render/trace/parts/parts.h"
 
 /* The things of a tree. Functions are thread-safe. */
 typedef struct Crowd {
@@ -16,15 +17,24 @@ typedef struct Crowd {
     bool        ask_all; /* as of parts_first_hits */
 } Crowd;
 
+/* Those of them that rays may meet. */
+typedef struct CrowdAmong {
+    const int     *list;          /* [count], ascending */
+    int            count;         /* -1: no list: all */
+    int            hidden;        /* never met; -1: none */
+    int            known;         /* an item whose hits are given, for every ray of a block; -1: none */
+    const double  *known_range_m; /* INFINITY: not met */
+    const PartHit *known_hit;
+} CrowdAmong;
+
 typedef struct CrowdCounts {
     uint64_t asked, asked_nodes, nodes; /* ray-item pairs, ray-node pairs; of the pairs' items all nodes */
 } CrowdCounts;
 
 /* First hits: limit_m, item (index + 1; 0: none) and hit of each ray of the order (order_rays) [count], in and out:
- * what was met before at limit_m has priority at equal range if its index is lower. among: of entities; NULL: all of
- * them. */
+ * what was met before at limit_m has priority at equal range if its index is lower. among: NULL: all. */
 void crowd_first_hits(double *limit_m, uint32_t *item, PartHit *hit, CrowdCounts *counts, const Crowd *crowd,
-                      const double *const o[3], const double *const d[3], int count, const RayEntities *among,
+                      const double *const o[3], const double *const d[3], int count, const CrowdAmong *among,
                       const int *order);
 /* dark becomes 1 where anything is met. */
 void crowd_any_hits(uint8_t *dark, CrowdCounts *counts, const Crowd *crowd, int count, const double *const o[3],

@@ -52,10 +52,17 @@ static void parts_first(double *range_m, void *found, const TraceBlock *block, c
     const uint64_t drawable = (uint64_t)(v->drawable - (among.hidden >= 0 && v->loose[among.hidden]));
     uint64_t       offered = 0, asked = 0;
     if (crowd) {
-        CrowdCounts counts = {0};
-        const Crowd entities = entity_crowd(v, block->rays->bent);
+        CrowdCounts       counts = {0};
+        const Crowd       entities = entity_crowd(v, block->rays->bent);
+        const EntityHits *known = among.known;
+        const CrowdAmong  some = {among.list,
+                                  among.count,
+                                  among.hidden,
+                                 known ? known->entity : -1,
+                                 known ? known->range_m : NULL,
+                                 known ? known->hit : NULL};
         order_rays(order, count, block->rays->columns);
-        crowd_first_hits(limit_m, of->entity, of->hit, &counts, &entities, o, d, count, &among, order);
+        crowd_first_hits(limit_m, of->entity, of->hit, &counts, &entities, o, d, count, &some, order);
         asked = counts.asked;
         block->counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
         block->counters->skipped[SKIP_TREE] +=
