@@ -115,6 +115,9 @@ static const struct {
     {"animal", NULL, parametric_structure},
     {"none", NULL, parametric_structure},
     {"chaff", NULL, parametric_structure},
+    {"rock_1", NULL, parametric_rock},
+    {"rock_2", NULL, parametric_rock},
+    {"rock_3", NULL, parametric_rock},
 };
 
 enum { builder_count = sizeof builders / sizeof *builders };
