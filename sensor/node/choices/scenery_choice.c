@@ -2,8 +2,11 @@
 #include "sensor/node/choices/choices.h"
 
 #include "entities/scenery/scenery_buildings.h"
+#include "entities/scenery/scenery_clutter.h"
 #include "terrain/culture/culture_invented.h"
 #include "terrain/from_files/culture_import.h"
+
+static const double clutter_half_m = 8000; /* half the width of a square with clutter, at most */
 
 static double ground_at(void *user, double x_m, double y_m)
 {
@@ -56,6 +59,28 @@ static Status find_culture(Culture *out, Choices *choices, const Config *config,
     return read_files(out, choices, config, square, landscape);
 }
 
+static Status add_clutter(SceneryChoice *out, Choices *choices, const Config *config, const WoodsSquare *square,
+                          const Landscape *landscape)
+{
+    const int     before = out->scenery.objects;
+    ClutterConfig clutter = clutter_default_config();
+    if (!(config->terrain.clutter > 0)) return STATUS_OK;
+    clutter.density = config->terrain.clutter;
+    clutter.seed = (uint64_t)config->seed;
+    for (int k = 0; k < 2; k++) {
+        clutter.south_west_m[k] = square->centre_m[k] - fmin(square->half_width_m, clutter_half_m);
+        clutter.north_east_m[k] = square->centre_m[k] + fmin(square->half_width_m, clutter_half_m);
+    }
+    clutter.landscape = landscape;
+    clutter.culture = out->culture.index ? &out->culture : NULL;
+    const Status status = scenery_add_clutter(&out->scenery, &clutter);
+    if (status == STATUS_OK)
+        choice_add(choices, "clutter: %d things, %d of them driving, within %.1f km (terrain.clutter)",
+                   out->scenery.objects - before, out->scenery.movers,
+                   1e-3 * fmin(square->half_width_m, clutter_half_m));
+    return status;
+}
+
 Status choice_scenery(SceneryChoice *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
                       const Landscape *landscape)
 {
@@ -64,6 +89,7 @@ Status choice_scenery(SceneryChoice *out, Choices *choices, const ChoiceBasis *b
     Status status = find_culture(&out->culture, choices, basis->config, square, landscape);
     if (status == STATUS_OK && out->culture.index)
         status = scenery_add_buildings(&out->scenery, &out->culture, ground_at, (void *)landscape);
+    if (status == STATUS_OK) status = add_clutter(out, choices, basis->config, square, landscape);
     if (status != STATUS_OK)
         log_error("scenery: %s; terrain.buildings=off and terrain.clutter=0 show none", status_name(status));
     else if (out->scenery.objects > 0)
