@@ -272,17 +272,21 @@ static uint64_t sum_of(const Culture *c, bool in_order)
 
 typedef struct Job {
     const Landscape *land;
-    Culture          whole[6], part[4];
+    Culture          whole[6], part[9];
 } Job;
 
-static const double quarter_m[4][2] = {{-1500, -1500}, {1500, -1500}, {-1500, 1500}, {1500, 1500}};
+/* Nine squares over the ground; their borders are not those of cells in which sites are looked for. */
+static const double part_half_m = 1130;
 
 static void invent_some(void *user, int worker, int task)
 {
     Job *job = user;
     (void)worker;
     if (task < 6) job->whole[task] = invent(job->land, 0, 0, 3000);
-    else job->part[9 - task] = invent(job->land, quarter_m[9 - task][0], quarter_m[9 - task][1], 1500);
+    else {
+        const int k = 14 - task; /* the last first */
+        job->part[k] = invent(job->land, 2 * part_half_m * (k % 3 - 1), 2 * part_half_m * (k / 3 - 1), part_half_m);
+    }
 }
 
 static int by_id(const void *a, const void *b)
@@ -299,13 +303,13 @@ static void the_same_from_any_thread_and_square(void **state)
     Job       job = {.land = &land};
     make(&land, 3, 3000, NULL);
     CHECK(pool_create(&pool, 4) == STATUS_OK);
-    pool_run(pool, 10, invent_some, &job);
+    pool_run(pool, 15, invent_some, &job);
     pool_destroy(pool);
     const Culture *c = &job.whole[0];
     uint64_t       parts = 0;
     int            records = 0;
     for (int k = 1; k < 6; k++) CHECK(sum_of(&job.whole[k], true) == sum_of(c, true));
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 9; k++) {
         CHECK(job.part[k].buildings > 0);
         parts += sum_of(&job.part[k], false);
     }
@@ -316,14 +320,14 @@ static void the_same_from_any_thread_and_square(void **state)
     for (int n = 0; n < c->points; n++) id[records++] = c->point[n].id;
     qsort(id, (size_t)records, sizeof *id, by_id);
     for (int n = 1; n < records; n++) CHECK(id[n] != id[n - 1] && id[n - 1] != 0);
-    print_message("%d records in one square and in four\n", records);
+    print_message("%d records in one square and in nine\n", records);
     free(id);
     Culture other;
     CHECK(culture_invent(&other, &land, &(CultureConfig){4, {0, 0}, 3000}) == STATUS_OK);
     CHECK(sum_of(&other, false) != sum_of(c, false)); /* of another seed */
     culture_free(&other);
     for (int k = 0; k < 6; k++) culture_free(&job.whole[k]);
-    for (int k = 0; k < 4; k++) culture_free(&job.part[k]);
+    for (int k = 0; k < 9; k++) culture_free(&job.part[k]);
     landscape_destroy(&land);
 }
 
