@@ -45,18 +45,29 @@ static void strip(BuildingWork *w, int slot, const double a[2], const double b[2
 
 /* ---- slabs ---------------------------------------------------------------------------------------- */
 
-/* Both sides of one triangle of a slab with a ragged hole in its middle. top, under: its corners. */
+/* Both sides of one triangle of a slab with a ragged hole inside its inscribed circle. top, under: its corners. */
 static void holed_triangle(BuildingWork *w, const double (*top)[3], const double (*under)[3], uint32_t stream)
 {
     double in[2][6][3]; /* around the hole: towards a corner, towards the side after it, .. */
+    double side_m[3], middle[3], around_m = 0;
+    for (int i = 0; i < 3; i++) { /* opposite of corner i */
+        const double *a = top[(i + 1) % 3], *b = top[(i + 2) % 3];
+        side_m[i] = hypot(a[0] - b[0], a[1] - b[1]), around_m += side_m[i];
+    }
+    const double plan[3][2] = {{top[0][0], top[0][1]}, {top[1][0], top[1][1]}, {top[2][0], top[2][1]}};
+    const double radius_m = fmin(2 * outline_area_m2(plan, 3) / around_m, 3);
+    for (int c = 0; c < 3; c++)
+        middle[c] = (side_m[0] * top[0][c] + side_m[1] * top[1][c] + side_m[2] * top[2][c]) / around_m;
     for (int k = 0; k < 6; k++) {
-        const int    i = k / 2, j = k % 2 ? (i + 1) % 3 : i;
-        const double reach = 0.3 + 0.4 * record_random(w->b->id, stream + (uint32_t)k);
-        for (int c = 0; c < 3; c++) {
-            const double middle = (top[0][c] + top[1][c] + top[2][c]) / 3;
-            in[0][k][c] = middle + reach * (0.5 * (top[i][c] + top[j][c]) - middle);
-            in[1][k][c] = in[0][k][c];
-        }
+        const int    i = k / 2, j = (i + 1) % 3;
+        const double along = side_m[(i + 2) % 3],
+                     foot = 0.5 * (along + side_m[j] - side_m[i]) / along; /* from corner i */
+        double towards[3], length_m;
+        for (int c = 0; c < 3; c++)
+            towards[c] = (k % 2 ? top[i][c] + foot * (top[j][c] - top[i][c]) : top[i][c]) - middle[c];
+        length_m = hypot(towards[0], towards[1]);
+        const double reach = radius_m * (0.55 + 0.4 * record_random(w->b->id, stream + (uint32_t)k)) / length_m;
+        for (int c = 0; c < 3; c++) in[0][k][c] = in[1][k][c] = middle[c] + reach * towards[c];
         in[1][k][2] -= top[0][2] - under[0][2];
     }
     for (int side = 0; side < 2; side++)

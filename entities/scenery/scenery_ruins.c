@@ -47,32 +47,31 @@ static void floor_at(BuildingWork *w, int slot, const double (*p)[2], int n, dou
     free(q);
 }
 
-/* A heap in the widest triangle of the inside. */
-static void heap_inside(BuildingWork *w, int rubble, double z)
+/* A heap in the inscribed circle of each wide triangle of the inside, a few at most. */
+static void heaps_inside(BuildingWork *w, int rubble, double z)
 {
+    static const double least_m = 0.8, most = 6, along[2] = {1, 0};
     int(*t)[3] = malloc((size_t)w->n * sizeof *t);
-    double best = 0, middle[3] = {0, 0, z}, half_m = 0;
+    int made = 0;
     if (t && outline_triangulate(t, (const double(*)[2])w->p, w->n))
-        for (int k = 0; k < w->n - 2; k++) {
-            double corner[3][2], around = 0;
+        for (int k = 0; k < w->n - 2 && made < most; k++) {
+            double corner[3][2], around_m = 0, middle[3] = {0, 0, z};
             for (int i = 0; i < 3; i++) memcpy(corner[i], w->p[t[k][i]], sizeof corner[i]);
-            const double area = outline_area_m2((const double(*)[2])corner, 3);
-            for (int i = 0; i < 3; i++)
-                around += hypot(corner[i][0] - corner[(i + 1) % 3][0], corner[i][1] - corner[(i + 1) % 3][1]);
-            if (area / around <= best) continue;
-            best = area / around, half_m = 2 * area / around; /* of the circle inside */
-            for (int c = 0; c < 2; c++) {
-                middle[c] = 0;
-                for (int i = 0; i < 3; i++) {
-                    const double *u = corner[(i + 1) % 3], *v = corner[(i + 2) % 3];
-                    middle[c] += corner[i][c] * hypot(u[0] - v[0], u[1] - v[1]) / around;
-                }
+            for (int i = 0; i < 3; i++) { /* each corner weighs as the side opposite */
+                const double *u = corner[(i + 1) % 3], *v = corner[(i + 2) % 3],
+                             side_m = hypot(u[0] - v[0], u[1] - v[1]);
+                around_m += side_m;
+                for (int c = 0; c < 2; c++) middle[c] += side_m * corner[i][c];
             }
+            const double radius_m = 2 * outline_area_m2((const double(*)[2])corner, 3) / around_m;
+            if (radius_m < least_m) continue;
+            for (int c = 0; c < 2; c++) middle[c] /= around_m;
+            const double half[2] = {0.95 * (radius_m - wall_m), 0.95 * (radius_m - wall_m)};
+            cell_heap(w->cell, rubble, middle, along, half, fmin(0.6 * half[0], 0.4 * (double)w->b->eaves_m),
+                      w->b->id + (uint64_t)k);
+            made++;
         }
     free(t);
-    const double half[2] = {0.85 * half_m, 0.85 * half_m}, along[2] = {1, 0};
-    if (half_m > 0.6)
-        cell_heap(w->cell, rubble, middle, along, half, fmin(0.5 * half_m, 0.4 * (double)w->b->eaves_m), w->b->id);
 }
 
 void building_ruin(BuildingWork *w)
@@ -100,7 +99,7 @@ void building_ruin(BuildingWork *w)
                  (double[3]){in[k][0], in[k][1], za}, (double[3]){in[l][0], in[l][1], zb});
         }
         floor_at(w, rubble, (const double(*)[2])(hollow ? in : p), n, deck_m, false);
-        heap_inside(w, rubble, deck_m);
+        heaps_inside(w, rubble, deck_m);
     }
     free(p), free(in), free(top_m);
 }
