@@ -22,7 +22,8 @@ static void chimneys(BuildingWork *w)
     const int           count = w->b->chimneys > 4 ? 4 : w->b->chimneys;
     const char *material = w->b->wall_fabric == FABRIC_STONE ? fabric_material(FABRIC_STONE, w->b->id) : "brick_red";
     if (count == 0) return;
-    const int    slot = cell_part(w->cell, "chimney", material, w->b->heated ? HEAT_FLUE : HEAT_PASSIVE);
+    const int slot =
+        cell_part(w->cell, "chimney", material, w->b->heated && w->b->damage < 2 ? HEAT_FLUE : HEAT_PASSIVE);
     const double d[2] = {w->ridge[1][0] - w->ridge[0][0], w->ridge[1][1] - w->ridge[0][1]}, length = hypot(d[0], d[1]);
     const double along[2] = {length > 0.01 ? d[0] / length : 1, length > 0.01 ? d[1] / length : 0};
     for (int k = 0; k < count; k++) {
@@ -66,13 +67,18 @@ void building_make(CellMesh *cell, const Culture *culture, const Building *b, co
     w.base_m = (double)b->base_m - origin[2];
     w.skirt_m = skirt(&w);
     cell_begin(cell, b->id);
-    const HeatRole role = b->heated ? HEAT_DWELLING : HEAT_PASSIVE;
+    const HeatRole role = b->heated && b->damage < 2 ? HEAT_DWELLING : HEAT_PASSIVE;
     w.wall = cell_part(cell, "wall", fabric_material(b->wall_fabric, b->id), role);
     w.roof = cell_part(cell, "roof", fabric_material(b->roof_fabric, b->id), role);
-    building_roof(&w);
-    building_walls(&w);
-    chimneys(&w);
-    vents(&w);
+    w.lid = b->damage > 1 ? cell_part(cell, "wall", "masonry_sooted", HEAT_PASSIVE) : w.wall;
+    if (b->damage > 2) {
+        building_ruin(&w);
+    } else {
+        building_roof(&w);
+        building_walls(&w);
+        chimneys(&w);
+        vents(&w);
+    }
     cell_end(cell);
     free(w.p);
 }

@@ -109,12 +109,13 @@ typedef struct BuildingWork {
     const Building *b;
     CellMesh       *cell;
     int             n;
-    double (*p)[2];         /* outline in the cell's plane */
-    double         base_m;  /* in the cell's height */
-    double         top_m;   /* of the walls' upright part over the base: what roofs leave */
-    double         skirt_m; /* how far walls go into the ground */
-    int            wall, roof;
-    SceneryGround *ground_m; /* in ENU */
+    double (*p)[2];                 /* outline in the cell's plane */
+    double         base_m;          /* in the cell's height */
+    double         top_m;           /* of the walls' upright part over the base: what roofs leave */
+    double         skirt_m;         /* how far walls go into the ground */
+    int            wall, roof, lid; /* slots; lid: what closes walls under the roof */
+    int            holes;           /* faces of the roof so far, each with random numbers of its own */
+    SceneryGround *ground_m;        /* in ENU */
     void          *user;
     double         origin[3];                /* of the cell in ENU */
     double         ridge[2][2], ridge_top_m; /* the highest line of the roof, for chimneys */
@@ -124,8 +125,14 @@ typedef struct BuildingWork {
 void building_roof(BuildingWork *w);
 /* Adds the walls to top_m, with windows and doors. */
 void building_walls(BuildingWork *w);
+/* All that is left of a destroyed building. */
+void building_ruin(BuildingWork *w);
 void building_make(CellMesh *cell, const Culture *culture, const Building *b, const double origin[3],
                    SceneryGround *ground_m, void *user);
+
+/* A heap of a material, elliptic: middle of its foot, half sizes along and across. */
+void cell_heap(CellMesh *cell, int slot, const double at[3], const double along[2], const double half[2], double high_m,
+               uint64_t id);
 
 /* ---- works (scenery_points.c, scenery_lines.c) ---------------------------------------------------- */
 

@@ -29,12 +29,13 @@ const char *fabric_material(int fabric, uint64_t id)
 
 const char *door_material(uint64_t id)
 {
-    static const char *const of[5] = {"door_brown", "door_green", "door_blue", "paint_white_wood", "door_red"};
+    static const char *const of[5] = {"paint_brown_wood", "paint_green_wood", "paint_blue_wood", "paint_white_wood",
+                                      "paint_red_wood"};
     return choose(of, 5, id, 2);
 }
 
 const char *frame_material(uint64_t id)
 {
-    static const char *const of[3] = {"paint_white_wood", "paint_white_wood", "door_brown"};
+    static const char *const of[3] = {"paint_white_wood", "paint_white_wood", "paint_brown_wood"};
     return choose(of, 3, id, 3);
 }

@@ -13,9 +13,9 @@ enum { pieces_most = 4096, run_stations = 260, sag_pieces = 10 };
 /* About how far apart the stations of a kind are; 0: only its corners. Negative: nothing is seen. */
 static double spacing_m(int kind)
 {
-    static const double of[CULTURE_LINE_KINDS] = {[CULTURE_WALL] = 8,   [CULTURE_FENCE] = 2.7, [CULTURE_WIRE_FENCE] = 4,
-                                                  [CULTURE_BRIDGE] = 8, [CULTURE_ROAD] = -1,   [CULTURE_TRACK] = -1,
-                                                  [CULTURE_WATER] = -1};
+    static const double of[CULTURE_LINE_KINDS] = {
+        [CULTURE_WALL] = 8,  [CULTURE_FENCE] = 2.7, [CULTURE_WIRE_FENCE] = 4, [CULTURE_BRIDGE] = 8,
+        [CULTURE_ROAD] = -1, [CULTURE_TRACK] = -1,  [CULTURE_WATER] = -1};
     return of[kind];
 }
 
@@ -132,9 +132,9 @@ static double or_usual(float given_m, double usual_m) { return given_m > 0 ? (do
 static void make_wall(const Run *r)
 {
     static const char *const of[3] = {"stone_wall_grey", "stone_wall_buff", "brick_red"};
-    const int    kind = (int)(3 * record_random(r->line->id, 1));
-    const double high_m = or_usual(r->line->height_m, 1.2), half_m = 0.5 * or_usual(r->line->width_m, 0.4);
-    const int    slot = cell_part(r->cell, "wall", of[kind < 3 ? kind : 2], HEAT_PASSIVE);
+    const int                kind = (int)(3 * record_random(r->line->id, 1));
+    const double             high_m = or_usual(r->line->height_m, 1.2), half_m = 0.5 * or_usual(r->line->width_m, 0.4);
+    const int                slot = cell_part(r->cell, "wall", of[kind < 3 ? kind : 2], HEAT_PASSIVE);
     cell_sweep(r->cell, slot, r->station, r->stations, &(Section){0, half_m, -0.4, high_m});
 }
 
@@ -150,10 +150,10 @@ static void make_posts(const Run *r, double high_m, double half_m, int slot)
 static void make_fence(const Run *r)
 {
     static const double at[3] = {0.3, 0.62, 0.92};
-    const char  *material = record_random(r->line->id, 1) < 0.7 ? "timber_weathered" : "paint_white_wood";
-    const double high_m = or_usual(r->line->height_m, 1.2);
-    const int    post = cell_part(r->cell, "post", material, HEAT_PASSIVE);
-    const int    rail = cell_part(r->cell, "rail", material, HEAT_PASSIVE);
+    const char         *material = record_random(r->line->id, 1) < 0.7 ? "timber_weathered" : "paint_white_wood";
+    const double        high_m = or_usual(r->line->height_m, 1.2);
+    const int           post = cell_part(r->cell, "post", material, HEAT_PASSIVE);
+    const int           rail = cell_part(r->cell, "rail", material, HEAT_PASSIVE);
     make_posts(r, high_m, 0.055, post);
     for (int k = 0; k < (high_m > 0.9 ? 3 : 2); k++) {
         const double z = at[k + (high_m > 0.9 ? 0 : 1)] * high_m;
@@ -212,7 +212,8 @@ static void make_power_line(const Run *r)
                 for (int c = 0; c < 3; c++) part[i].p[c] = i < sag_pieces ? a->p[c] + t * (b->p[c] - a->p[c]) : b->p[c];
                 part[i].p[2] += z - 4 * sag * span_m * t * (1 - t);
                 for (int c = 0; c < 2; c++) {
-                    const double la = a->left[c] / hypot(a->left[0], a->left[1]), lb = b->left[c] / hypot(b->left[0], b->left[1]);
+                    const double la = a->left[c] / hypot(a->left[0], a->left[1]),
+                                 lb = b->left[c] / hypot(b->left[0], b->left[1]);
                     part[i].p[c] += across * (la + t * (lb - la));
                     part[i].left[c] = c == 0 ? -(b->p[1] - a->p[1]) / span_m : (b->p[0] - a->p[0]) / span_m;
                 }
@@ -229,8 +230,8 @@ static void make_bridge(Run *r, const Culture *c, int first)
     const Station from = station_at(&at, c, r->line, 0, r->ground), to = station_at(&at, c, r->line, pieces, r->ground);
     const double  half_m = 0.5 * or_usual(r->line->width_m, 6), thick_m = clamp(0.12 * half_m + 0.4, 0.5, 1.5);
     const int     deck = cell_part(r->cell, "deck", "concrete_weathered", HEAT_PASSIVE);
-    const int     rail = cell_part(r->cell, "rail", half_m > 2 ? "concrete_panel" : "metal_steel_galvanized", HEAT_PASSIVE);
-    const int     pier = cell_part(r->cell, "base", "concrete_weathered", HEAT_PASSIVE);
+    const int rail = cell_part(r->cell, "rail", half_m > 2 ? "concrete_panel" : "metal_steel_galvanized", HEAT_PASSIVE);
+    const int pier = cell_part(r->cell, "base", "concrete_weathered", HEAT_PASSIVE);
     for (int k = 0; k < r->stations; k++) {
         Station     *s = &r->station[k];
         const double ground_m = s->p[2];
@@ -238,12 +239,12 @@ static void make_bridge(Run *r, const Culture *c, int first)
         const double length = hypot(s->left[0], s->left[1]), along[2] = {s->left[1] / length, -s->left[0] / length};
         const bool   here = k + 1 < r->stations && (first + k) % 2 == 0 && first + k > 0;
         if (here && s->p[2] - thick_m - ground_m > 1)
-            cell_box(r->cell, pier, s->p, along, 0.4 + 0.05 * half_m, 0.75 * half_m, ground_m - 1, s->p[2] - 0.5 * thick_m);
+            cell_box(r->cell, pier, s->p, along, 0.4 + 0.05 * half_m, 0.75 * half_m, ground_m - 1,
+                     s->p[2] - 0.5 * thick_m);
     }
     cell_sweep(r->cell, deck, r->station, r->stations, &(Section){0, half_m, -thick_m, 0});
     for (int side = -1; side <= 1; side += 2)
-        cell_sweep(r->cell, rail, r->station, r->stations,
-                   &(Section){side * (half_m - 0.14), 0.12, -0.1, 0.95});
+        cell_sweep(r->cell, rail, r->station, r->stations, &(Section){side * (half_m - 0.14), 0.12, -0.1, 0.95});
 }
 
 void line_make(CellMesh *cell, const Culture *c, const CultureLine *line, int first, int count,
@@ -261,12 +262,23 @@ void line_make(CellMesh *cell, const Culture *c, const CultureLine *line, int fi
     for (int k = 0; k <= count; k++) r->station[k] = station_at(&at, c, line, first + k, ground);
     cell_begin(cell, line->id);
     switch ((CultureLineKind)line->kind) {
-    case CULTURE_WALL: make_wall(r); break;
-    case CULTURE_FENCE: make_fence(r); break;
-    case CULTURE_WIRE_FENCE: make_wire_fence(r); break;
-    case CULTURE_POWER_LINE: make_power_line(r); break;
-    case CULTURE_BRIDGE: make_bridge(r, c, first); break;
-    default: break;
+    case CULTURE_WALL:
+        make_wall(r);
+        break;
+    case CULTURE_FENCE:
+        make_fence(r);
+        break;
+    case CULTURE_WIRE_FENCE:
+        make_wire_fence(r);
+        break;
+    case CULTURE_POWER_LINE:
+        make_power_line(r);
+        break;
+    case CULTURE_BRIDGE:
+        make_bridge(r, c, first);
+        break;
+    default:
+        break;
     }
     cell_end(cell);
     free(r);

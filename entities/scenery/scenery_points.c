@@ -66,7 +66,7 @@ static void lamp(CellMesh *cell, const CulturePoint *q, const Spot *s)
 
 static void sign(CellMesh *cell, const CulturePoint *q, const Spot *s)
 {
-    static const char *const of[4] = {"sheet_white", "door_blue", "door_red", "sheet_white"};
+    static const char *const of[4] = {"sheet_white", "container_blue", "container_red", "sheet_white"};
     const int                post = cell_part(cell, "post", "metal_steel_galvanized", HEAT_PASSIVE);
     const int                plate = cell_part(cell, "plate", one_of(of, 4, q->id), HEAT_PASSIVE);
     const double             high_m = q->size_m[2], wide_m = fmax(q->size_m[0], q->size_m[1]);
@@ -81,7 +81,7 @@ static void tank(CellMesh *cell, const CulturePoint *q, const Spot *s, bool silo
 {
     static const char *const tanks[3] = {"sheet_white", "sheet_grey", "metal_aluminium_bare"};
     static const char *const silos[3] = {"metal_steel_galvanized", "concrete", "sheet_green"};
-    const int    slot = cell_part(cell, "tank", one_of(silo ? silos : tanks, 3, q->id), HEAT_PASSIVE);
+    const int    slot = cell_part(cell, silo ? "silo" : "tank", one_of(silo ? silos : tanks, 3, q->id), HEAT_PASSIVE);
     const double high_m = q->size_m[2], half[2] = {0.5 * (double)q->size_m[0], 0.5 * (double)q->size_m[1]};
     const double cone_m = fmin(silo ? 0.45 * (half[0] + half[1]) : 0.06 * (half[0] + half[1]), 0.4 * high_m);
     const double z = s->p[2], rz[4][2] = {{0, z - foot_m}, {1, z - foot_m}, {1, z + high_m - cone_m}, {0, z + high_m}};
@@ -92,17 +92,17 @@ static void container(CellMesh *cell, const CulturePoint *q, const Spot *s)
 {
     static const char *const of[4] = {"container_red", "container_blue", "container_green", "paint_grey"};
     static const double      deep_m = 0.036;
-    const int    slot = cell_part(cell, "container", one_of(of, 4, q->id), HEAT_PASSIVE);
-    const double half = 0.5 * (double)q->size_m[0], across = 0.5 * (double)q->size_m[1];
-    const int    ribs = (int)clamp(floor(2 * half / 0.9), 1, 7);
-    double       p[64][2];
-    int          n = 0;
+    const int                slot = cell_part(cell, "container", one_of(of, 4, q->id), HEAT_PASSIVE);
+    const double             half = 0.5 * (double)q->size_m[0], across = 0.5 * (double)q->size_m[1];
+    const int                ribs = (int)clamp(floor(2 * half / 0.9), 1, 7);
+    double                   p[64][2];
+    int                      n = 0;
     for (int side = -1; side <= 1; side += 2) /* along the right side, back along the left */
         for (int k = 0; k < 4 * ribs + 2; k++) {
             static const double at[4] = {0.15, 0.3, 0.7, 0.85}; /* of a pitch: where the sheet goes in and out */
             const double        u = k == 0 ? 0 : k > 4 * ribs ? ribs : (k - 1) / 4 + at[(k - 1) % 4];
             const bool          is_in = k > 0 && k <= 4 * ribs && ((k - 1) % 4 == 1 || (k - 1) % 4 == 2);
-            const double        along = -side * (2 * half * u / ribs - half), out = side * (across - (is_in ? deep_m : 0));
+            const double along = -side * (2 * half * u / ribs - half), out = side * (across - (is_in ? deep_m : 0));
             p[n][0] = s->p[0] + along * s->along[0] - out * s->along[1];
             p[n][1] = s->p[1] + along * s->along[1] + out * s->along[0];
             n++;
@@ -111,22 +111,21 @@ static void container(CellMesh *cell, const CulturePoint *q, const Spot *s)
 }
 
 /* A cone with a rounded top whose sides waver by its id. */
-static void heap(CellMesh *cell, const CulturePoint *q, const Spot *s)
+void cell_heap(CellMesh *cell, int slot, const double at[3], const double along[2], const double half[2], double high_m,
+               uint64_t id)
 {
-    static const char *const of[4] = {"rubble", "soil_loam_brown", "soil_plowed_dark", "sand_quartz"};
     enum { sides = 12, rings = 4 };
     static const double radius[rings] = {1, 0.75, 0.45, 0.15}, high[rings] = {0, 0.35, 0.75, 1};
-    const int           slot = cell_part(cell, "heap", one_of(of, 4, q->id), HEAT_PASSIVE);
     double              p[rings][sides][3];
     for (int j = 0; j < rings; j++)
         for (int k = 0; k < sides; k++) {
             const double a = 2 * pi_rad * k / sides;
-            const double wave = 1 - 0.25 * record_random(q->id, (uint32_t)(16 + j * sides + k)) * (j > 0 && j < 3);
-            const double u = radius[j] * wave * cos(a) * 0.5 * (double)q->size_m[0];
-            const double v = radius[j] * wave * sin(a) * 0.5 * (double)q->size_m[1];
-            p[j][k][0] = s->p[0] + u * s->along[0] - v * s->along[1];
-            p[j][k][1] = s->p[1] + u * s->along[1] + v * s->along[0];
-            p[j][k][2] = s->p[2] + high[j] * (double)q->size_m[2];
+            const double wave = 1 - 0.25 * record_random(id, (uint32_t)(16 + j * sides + k)) * (j > 0 && j < 3);
+            const double u = radius[j] * wave * cos(a) * half[0];
+            const double v = radius[j] * wave * sin(a) * half[1];
+            p[j][k][0] = at[0] + u * along[0] - v * along[1];
+            p[j][k][1] = at[1] + u * along[1] + v * along[0];
+            p[j][k][2] = at[2] + high[j] * high_m;
         }
     double foot[sides][3], under[sides][3];
     for (int k = 0; k < sides; k++) {
@@ -148,18 +147,26 @@ static void heap(CellMesh *cell, const CulturePoint *q, const Spot *s)
         }
 }
 
+static void heap(CellMesh *cell, const CulturePoint *q, const Spot *s)
+{
+    static const char *const of[4] = {"rubble", "soil_loam_brown", "soil_plowed_dark", "sand_quartz"};
+    const double             half[2] = {0.5 * (double)q->size_m[0], 0.5 * (double)q->size_m[1]};
+    cell_heap(cell, cell_part(cell, "heap", one_of(of, 4, q->id), HEAT_PASSIVE), s->p, s->along, half,
+              (double)q->size_m[2], q->id);
+}
+
 /* Layers of blocks, each a little out of place. */
 static void stack(CellMesh *cell, const CulturePoint *q, const Spot *s)
 {
-    static const char *const of[3] = {"thatch_fresh", "wood_pine", "timber_weathered"};
-    const int    slot = cell_part(cell, "heap", one_of(of, 3, q->id), HEAT_PASSIVE);
-    const double high_m = q->size_m[2];
-    const int    layers = (int)clamp(floor(high_m / 0.8 + 0.5), 1, 6);
+    static const char *const of[3] = {"straw_bales", "wood_pine", "timber_weathered"};
+    const int                slot = cell_part(cell, "heap", one_of(of, 3, q->id), HEAT_PASSIVE);
+    const double             high_m = q->size_m[2];
+    const int                layers = (int)clamp(floor(high_m / 0.8 + 0.5), 1, 6);
     for (int k = 0; k < layers; k++) {
         const double inset = 0.06 * (double)q->size_m[0] * record_random(q->id, (uint32_t)(8 + k));
         const double z0 = s->p[2] + k * high_m / layers - (k == 0 ? foot_m : 0);
-        cell_box(cell, slot, s->p, s->along, 0.5 * (double)q->size_m[0] - inset, 0.5 * (double)q->size_m[1] - 0.3 * inset,
-                 z0, s->p[2] + (k + 1) * high_m / layers);
+        cell_box(cell, slot, s->p, s->along, 0.5 * (double)q->size_m[0] - inset,
+                 0.5 * (double)q->size_m[1] - 0.3 * inset, z0, s->p[2] + (k + 1) * high_m / layers);
     }
 }
 
@@ -167,37 +174,55 @@ static void stack(CellMesh *cell, const CulturePoint *q, const Spot *s)
 static void chimney(CellMesh *cell, const CulturePoint *q, const Spot *s)
 {
     static const char *const of[3] = {"brick_red", "concrete", "brick_brown"};
-    const bool   used = record_random(q->id, 2) < 0.5;
-    const int    slot = cell_part(cell, "chimney", one_of(of, 3, q->id), used ? HEAT_FLUE : HEAT_PASSIVE);
-    const double z = s->p[2], top = z + (double)q->size_m[2], deep_m = fmin(2, 0.2 * (double)q->size_m[2]);
-    const double half[2] = {0.5 * (double)q->size_m[0], 0.5 * (double)q->size_m[1]};
-    const double rz[6][2] = {{0, z - foot_m}, {1, z - foot_m}, {0.65, top}, {0.5, top}, {0.5, top - deep_m}, {0, top - deep_m}};
+    const bool               used = record_random(q->id, 2) < 0.5;
+    const int                slot = cell_part(cell, "chimney", one_of(of, 3, q->id), used ? HEAT_FLUE : HEAT_PASSIVE);
+    const double             z = s->p[2], top = z + (double)q->size_m[2], deep_m = fmin(2, 0.2 * (double)q->size_m[2]);
+    const double             half[2] = {0.5 * (double)q->size_m[0], 0.5 * (double)q->size_m[1]};
+    const double             rz[6][2] = {{0, z - foot_m}, {1, z - foot_m},     {0.65, top},
+                                         {0.5, top},      {0.5, top - deep_m}, {0, top - deep_m}};
     cell_round(cell, slot, s->p, half, (double)q->heading_rad, rz, 6, 16);
 }
 
 void point_make(CellMesh *cell, const CulturePoint *q, const double origin[3])
 {
-    const Spot s = {{q->x_m - origin[0], q->y_m - origin[1], (double)q->base_m - origin[2]},
-                    {sin((double)q->heading_rad), cos((double)q->heading_rad)}};
+    const Spot   s = {{q->x_m - origin[0], q->y_m - origin[1], (double)q->base_m - origin[2]},
+                      {sin((double)q->heading_rad), cos((double)q->heading_rad)}};
     const double high_m = q->size_m[2], half_m = 0.25 * ((double)q->size_m[0] + (double)q->size_m[1]);
     cell_begin(cell, q->id);
     switch ((CulturePointKind)q->kind) {
     case CULTURE_POLE:
         cell_pole(cell, cell_part(cell, "post", "timber_stained", HEAT_PASSIVE), s.p, high_m, fmin(half_m, 0.12));
         break;
-    case CULTURE_LAMP: lamp(cell, q, &s); break;
-    case CULTURE_SIGN: sign(cell, q, &s); break;
-    case CULTURE_TANK: tank(cell, q, &s, false); break;
-    case CULTURE_SILO: tank(cell, q, &s, true); break;
-    case CULTURE_CONTAINER: container(cell, q, &s); break;
-    case CULTURE_HEAP: heap(cell, q, &s); break;
-    case CULTURE_STACK: stack(cell, q, &s); break;
-    case CULTURE_CHIMNEY: chimney(cell, q, &s); break;
+    case CULTURE_LAMP:
+        lamp(cell, q, &s);
+        break;
+    case CULTURE_SIGN:
+        sign(cell, q, &s);
+        break;
+    case CULTURE_TANK:
+        tank(cell, q, &s, false);
+        break;
+    case CULTURE_SILO:
+        tank(cell, q, &s, true);
+        break;
+    case CULTURE_CONTAINER:
+        container(cell, q, &s);
+        break;
+    case CULTURE_HEAP:
+        heap(cell, q, &s);
+        break;
+    case CULTURE_STACK:
+        stack(cell, q, &s);
+        break;
+    case CULTURE_CHIMNEY:
+        chimney(cell, q, &s);
+        break;
     case CULTURE_MAST:
         cell_lattice(cell, cell_part(cell, "post", "metal_steel_galvanized", HEAT_PASSIVE), s.p, high_m, half_m,
                      0.5 * half_m);
         break;
-    case CULTURE_POINT_KINDS: break;
+    case CULTURE_POINT_KINDS:
+        break;
     }
     cell_end(cell);
 }

@@ -43,6 +43,91 @@ static void strip(BuildingWork *w, int slot, const double a[2], const double b[2
     cell_face(w->cell, slot, p, 4);
 }
 
+/* ---- slabs ---------------------------------------------------------------------------------------- */
+
+/* Both sides of one triangle of a slab with a ragged hole inside its inscribed circle. top, under: its corners. */
+static void holed_triangle(BuildingWork *w, const double (*top)[3], const double (*under)[3], uint32_t stream)
+{
+    double in[2][6][3]; /* around the hole: towards a corner, towards the side after it, .. */
+    double side_m[3], middle[3], around_m = 0;
+    for (int i = 0; i < 3; i++) { /* opposite of corner i */
+        const double *a = top[(i + 1) % 3], *b = top[(i + 2) % 3];
+        side_m[i] = hypot(a[0] - b[0], a[1] - b[1]), around_m += side_m[i];
+    }
+    const double plan[3][2] = {{top[0][0], top[0][1]}, {top[1][0], top[1][1]}, {top[2][0], top[2][1]}};
+    const double radius_m = fmin(2 * outline_area_m2(plan, 3) / around_m, 3);
+    for (int c = 0; c < 3; c++)
+        middle[c] = (side_m[0] * top[0][c] + side_m[1] * top[1][c] + side_m[2] * top[2][c]) / around_m;
+    for (int k = 0; k < 6; k++) {
+        const int    i = k / 2, j = (i + 1) % 3;
+        const double along = side_m[(i + 2) % 3],
+                     foot = 0.5 * (along + side_m[j] - side_m[i]) / along; /* from corner i */
+        double towards[3], length_m;
+        for (int c = 0; c < 3; c++)
+            towards[c] = (k % 2 ? top[i][c] + foot * (top[j][c] - top[i][c]) : top[i][c]) - middle[c];
+        length_m = hypot(towards[0], towards[1]);
+        const double reach = radius_m * (0.55 + 0.4 * record_random(w->b->id, stream + (uint32_t)k)) / length_m;
+        for (int c = 0; c < 3; c++) in[0][k][c] = in[1][k][c] = middle[c] + reach * towards[c];
+        in[1][k][2] -= top[0][2] - under[0][2];
+    }
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < 3; i++) {
+            const double *a = side ? under[i] : top[i], *b = side ? under[(i + 1) % 3] : top[(i + 1) % 3];
+            const double *ha = in[side][2 * i], *m = in[side][2 * i + 1], *hb = in[side][(2 * i + 2) % 6];
+            const double *corner[3][3] = {{a, b, m}, {a, m, ha}, {b, hb, m}};
+            for (int t = 0; t < 3; t++) {
+                double p[3][3];
+                for (int k = 0; k < 3; k++) memcpy(p[side ? 2 - k : k], corner[t][k], sizeof p[k]);
+                cell_face(w->cell, w->roof, (const double(*)[3])p, 3);
+            }
+        }
+    for (int k = 0; k < 6; k++) {
+        const int l = (k + 1) % 6;
+        strip(w, w->roof, in[0][l], in[0][k], (double[2]){in[1][l][2], in[1][k][2]},
+              (double[2]){in[0][l][2], in[0][k][2]});
+    }
+}
+
+/* One face of a slab with its underside; of a damaged building perhaps with a hole in its largest triangle. */
+static void slab_face(BuildingWork *w, const double (*node)[3], const int *index, int count, double z0, double under_z0,
+                      double per_m)
+{
+    static const double least_m2 = 5;
+    const uint32_t      stream = 64 + 8 * (uint32_t)w->holes++;
+    const bool          holed = w->b->damage == 2 && record_random(w->b->id, stream + 7) < 0.7;
+    double(*flat)[2] = holed ? malloc((size_t)count * sizeof *flat) : NULL;
+    int(*triangle)[3] = holed ? malloc((size_t)count * sizeof *triangle) : NULL;
+    int    largest = -1;
+    double most_m2 = least_m2;
+    for (int k = 0; k < count && flat && triangle; k++) memcpy(flat[k], node[index ? index[k] : k], sizeof flat[k]);
+    if (flat && triangle && outline_triangulate(triangle, (const double(*)[2])flat, count))
+        for (int t = 0; t < count - 2; t++) {
+            double p[3][2];
+            for (int k = 0; k < 3; k++) memcpy(p[k], flat[triangle[t][k]], sizeof p[k]);
+            const double m2 = outline_area_m2((const double(*)[2])p, 3);
+            if (m2 > most_m2) most_m2 = m2, largest = t;
+        }
+    for (int t = 0; t < count - 2 && largest >= 0; t++) {
+        double top[3][3], under[3][3], turned[3][3];
+        for (int k = 0; k < 3; k++) {
+            const double *q = node[index ? index[triangle[t][k]] : triangle[t][k]];
+            top[k][0] = under[k][0] = q[0], top[k][1] = under[k][1] = q[1];
+            top[k][2] = z0 + per_m * q[2], under[k][2] = under_z0 + per_m * q[2];
+            memcpy(turned[2 - k], under[k], sizeof under[k]);
+        }
+        if (t == largest) {
+            holed_triangle(w, (const double(*)[3])top, (const double(*)[3])under, stream);
+            continue;
+        }
+        cell_face(w->cell, w->roof, (const double(*)[3])top, 3);
+        cell_face(w->cell, w->roof, (const double(*)[3])turned, 3);
+    }
+    free(flat), free(triangle);
+    if (largest >= 0) return;
+    face_of(w, w->roof, node, index, count, z0, per_m, false);
+    face_of(w, w->roof, node, index, count, under_z0, per_m, true);
+}
+
 /* ---- flat things over an outline: skillions, flat slabs, lids and floors -------------------------- */
 
 static double height_on(const Slope *s, const double p[2])
@@ -65,11 +150,17 @@ static void sheet(BuildingWork *w, int slot, const double (*p)[2], int n, const 
 
 static void slab(BuildingWork *w, const double (*p)[2], const Slope *s, double thick_m)
 {
-    sheet(w, w->roof, p, w->n, s, 0, false);
-    sheet(w, w->roof, p, w->n, s, thick_m, true);
+    double(*node)[3] = malloc((size_t)w->n * sizeof *node);
+    if (!node) {
+        w->cell->status = STATUS_NO_MEMORY;
+        return;
+    }
+    for (int k = 0; k < w->n; k++) node[k][0] = p[k][0], node[k][1] = p[k][1], node[k][2] = height_on(s, p[k]);
+    slab_face(w, (const double(*)[3])node, NULL, w->n, 0, -thick_m, 1);
+    free(node);
     for (int k = 0; k < w->n; k++) {
         const double *a = p[k], *b = p[(k + 1) % w->n];
-        const double  high[2] = {height_on(s, a), height_on(s, b)}, low[2] = {high[0] - thick_m, high[1] - thick_m};
+        const double  high[2] = {height_on(s, a), height_on(s, b)}, low[2] = {-thick_m + high[0], -thick_m + high[1]};
         strip(w, w->roof, a, b, low, high);
     }
 }
@@ -92,7 +183,7 @@ static void lid(BuildingWork *w, double top_m)
 {
     const Slope flat = {.z0 = w->base_m + top_m};
     w->top_m = top_m;
-    sheet(w, w->wall, (const double(*)[2])w->p, w->n, &flat, 0, false);
+    sheet(w, w->lid, (const double(*)[2])w->p, w->n, &flat, 0, false);
 }
 
 static double roof_thickness_m(const BuildingWork *w, double slope)
@@ -127,6 +218,25 @@ static void inner_place(double out[2], const BuildingWork *w)
     free(t);
 }
 
+/* A ragged dark place on a flat roof: what is seen of a hole in it. */
+static void burnt_patch(BuildingWork *w, const double middle[2], double z)
+{
+    double       p[9][2], nearest_m = 4;
+    const double proud_m = 0.04;
+    for (int k = 0; k < w->n; k++) {
+        const double *a = w->p[k], *b = w->p[(k + 1) % w->n], length = hypot(b[0] - a[0], b[1] - a[1]);
+        nearest_m = fmin(nearest_m, ((b[0] - a[0]) * (middle[1] - a[1]) - (b[1] - a[1]) * (middle[0] - a[0])) / length -
+                                        parapet_m);
+    }
+    if (!(nearest_m > 0.3)) return;
+    for (int k = 0; k < 9; k++) {
+        const double a = 2 * pi_rad * k / 9, r = nearest_m * (0.4 + 0.4 * record_random(w->b->id, 48 + (uint32_t)k));
+        p[k][0] = middle[0] + r * cos(a), p[k][1] = middle[1] + r * sin(a);
+    }
+    cell_prism(w->cell, cell_part(w->cell, "roof", "masonry_sooted", HEAT_PASSIVE), (const double(*)[2])p, 9, z - 0.02,
+               z + proud_m);
+}
+
 static void flat_roof(BuildingWork *w, Outline spare)
 {
     const double z = w->base_m, eaves_m = w->b->eaves_m, ridge_m = w->b->ridge_m;
@@ -156,6 +266,7 @@ static void flat_roof(BuildingWork *w, Outline spare)
             cell_face(w->cell, w->wall, coping, 4);
             cell_face(w->cell, w->wall, inner, 4);
         }
+        if (w->b->damage > 1) burnt_patch(w, inside, z + deck_m);
         return;
     }
     const double thick_m = roof_thickness_m(w, 0);
@@ -204,7 +315,7 @@ static void skillion_roof(BuildingWork *w, Outline spare)
         const int l = (k + 1) % w->n;
         wall_top(w, k, height_on(&under, w->p[k]), height_on(&under, w->p[l]));
     }
-    sheet(w, w->wall, (const double(*)[2])w->p, w->n, &under, 0, false);
+    sheet(w, w->lid, (const double(*)[2])w->p, w->n, &under, 0, false);
     const double *a = w->p[highest], *b = w->p[(highest + 1) % w->n], *c = w->p[(highest + w->n - 1) % w->n];
     const bool    next = way[0] * b[0] + way[1] * b[1] > way[0] * c[0] + way[1] * c[1];
     double        inside[2], at[2];
@@ -239,8 +350,7 @@ static void slab_of_plan(BuildingWork *w, const RoofPlan *plan, const bool *gabl
         const int *index = plan->index + plan->first[f], count = plan->first[f + 1] - plan->first[f];
         const int  edge = plan->edge[f];
         if (edge < 0 || !gable || !gable[edge]) {
-            face_of(w, w->roof, (const double(*)[3])plan->node, index, count, z0, per_m, false);
-            face_of(w, w->roof, (const double(*)[3])plan->node, index, count, under_z0, per_m, true);
+            slab_face(w, (const double(*)[3])plan->node, index, count, z0, under_z0, per_m);
             continue;
         }
         for (int k = 0; k < count; k++) {
@@ -285,11 +395,11 @@ static int choose_gables(bool *gable, const BuildingWork *w)
 }
 
 /* What of walls stands over top_m under a plan with gables, and the lid. */
-static void gables_and_lid(BuildingWork *w, const RoofPlan *plan, double per_m)
+static void gables_and_lid(BuildingWork *w, const RoofPlan *plan, const bool *gable, double per_m)
 {
     for (int f = 0; f < plan->faces; f++)
-        face_of(w, w->wall, (const double(*)[3])plan->node, plan->index + plan->first[f],
-                plan->first[f + 1] - plan->first[f], w->base_m + w->top_m, per_m, false);
+        face_of(w, plan->edge[f] >= 0 && gable[plan->edge[f]] ? w->wall : w->lid, (const double(*)[3])plan->node,
+                plan->index + plan->first[f], plan->first[f + 1] - plan->first[f], w->base_m + w->top_m, per_m, false);
 }
 
 /* A hipped roof, or one with gables; false: no plan was found. */
@@ -307,7 +417,7 @@ static bool plan_roof(BuildingWork *w, Outline spare, const bool *gable)
         slab_of_plan(w, &plan, gable, z0, per_m, thick_m);
         find_ridge(w, &plan, w->base_m + ridge_m);
         w->top_m = eaves_m - 0.5 * thick_m;
-        if (gable) gables_and_lid(w, &under, per_m);
+        if (gable) gables_and_lid(w, &under, gable, per_m);
         else lid(w, w->top_m);
     }
     roof_plan_free(&plan), roof_plan_free(&under);
@@ -343,11 +453,8 @@ static bool pyramid_roof(BuildingWork *w)
     for (int k = 0; k < n; k++) {
         const double *a = low[k], *b = low[(k + 1) % n];
         const double  top[3][3] = {{a[0], a[1], z0}, {b[0], b[1], z0}, {apex[0], apex[1], z1}};
-        const double  under[3][3] = {
-             {b[0], b[1], z0 - thick_m}, {a[0], a[1], z0 - thick_m}, {apex[0], apex[1], z1 - thick_m}};
-        cell_face(w->cell, w->roof, top, 3);
-        cell_face(w->cell, w->roof, under, 3);
-        strip(w, w->roof, a, b, (double[2]){z0 - thick_m, z0 - thick_m}, (double[2]){z0, z0});
+        slab_face(w, top, NULL, 3, 0, -thick_m, 1);
+        strip(w, w->roof, a, b, (double[2]){-thick_m + z0, -thick_m + z0}, (double[2]){z0, z0});
     }
     lid(w, (double)w->b->eaves_m - 0.5 * thick_m);
     ridge_at(w, apex, apex, z1);

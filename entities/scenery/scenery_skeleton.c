@@ -122,8 +122,9 @@ static Event next_event(const Skeleton *s, const Ring *ring)
         const Front  *a = &f[i], *b = &f[(i + 1) % m];
         const double *e = s->edge[a->right];
         const double  length[2] = {b->p[0] - a->p[0], b->p[1] - a->p[1]};
-        const double  shrinking = dot2(e, a->v) - dot2(e, b->v);
-        if (shrinking > 1e-12) offer(&best, dot2(e, length) / shrinking, i, -1);
+        const double  shrinking = dot2(e, a->v) - dot2(e, b->v), length_m = dot2(e, length);
+        if (shrinking > 1e-9) offer(&best, length_m / shrinking, i, -1);
+        else if (shrinking > -1e-9 && length_m < 1e-7) offer(&best, 0, i, -1); /* left of no length by a split */
     }
     for (int i = 0; i < m; i++)
         if (cross2(s->edge[f[i].left], s->edge[f[i].right]) < -1e-9) offer_split(&best, s, f, m, i);

@@ -4,8 +4,8 @@
 /* Corner k of a station's cross-section, counter-clockwise seen against the way: right low, left low .. */
 static void section_corner(double p[3], const Station *s, int k, const Section *of)
 {
-    static const int    side[4] = {-1, 1, 1, -1};
-    const double        across_m = of->across_m + side[k] * of->half_m, *left = s->left;
+    static const int side[4] = {-1, 1, 1, -1};
+    const double     across_m = of->across_m + side[k] * of->half_m, *left = s->left;
     p[0] = s->p[0] + across_m * left[0], p[1] = s->p[1] + across_m * left[1];
     p[2] = s->p[2] + (k < 2 ? of->low_m : of->high_m);
 }

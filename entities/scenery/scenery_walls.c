@@ -7,7 +7,7 @@
 
 enum { columns_most = 48, storeys_most = 100, lines_most = 2 * columns_most, rows_most = 2 * storeys_most + 1 };
 
-static const double set_back_m = 0.1, frame_m = 0.07, corner_m = 0.5;
+static const double pane_m = 0.1, broken_m = 0.25, frame_m = 0.07, corner_m = 0.5;
 
 typedef struct Column {
     double u0, u1; /* along the wall */
@@ -17,7 +17,7 @@ typedef struct Column {
 typedef struct Facade {
     const double *a, *b;
     double        along[2], length_m;
-    int           columns, lines, rows, storeys;
+    int           number, columns, lines, rows, storeys;
     Column        column[columns_most];
     bool          has_door;
     double        sill_m[storeys_most], head_m[storeys_most];
@@ -33,7 +33,7 @@ typedef struct Openings {
 } Openings;
 
 static const Openings openings[BUILDING_USES] = {
-    [BUILDING_HOUSE] = {1.1, 3.2, 1.0, 2.1, 0}, [BUILDING_FLATS] = {1.5, 3.2, 1.4, 2.2, 0},
+    [BUILDING_HOUSE] = {1.1, 3.5, 1.0, 2.1, 0}, [BUILDING_FLATS] = {1.5, 3.2, 1.4, 2.2, 0},
     [BUILDING_BARN] = {0, 0, 3.4, 3.6, 0},      [BUILDING_SHED] = {0, 0, 2.3, 2.0, 0},
     [BUILDING_HALL] = {0, 0, 4.0, 4.2, 9},      [BUILDING_CHURCH] = {1.1, 3.6, 1.8, 2.8, 0},
 };
@@ -65,7 +65,7 @@ static void set_storeys(Facade *f, const BuildingWork *w)
     const double high_m = w->top_m / f->storeys;
     for (int k = 0; k < f->storeys; k++) {
         const bool church = w->b->use == BUILDING_CHURCH;
-        f->head_m[k] = k * high_m + (church ? 0.85 * w->top_m : fmin(0.82 * high_m, 2.3));
+        f->head_m[k] = k * high_m + (church ? 0.85 * w->top_m : fmin(0.78 * high_m, 2.25));
         f->sill_m[k] = church ? 0.35 * w->top_m : f->head_m[k] - fmin(0.5 * high_m, 1.35);
     }
     if (w->b->use == BUILDING_CHURCH) f->storeys = 1;
@@ -136,7 +136,8 @@ static void frame_side(const BuildingWork *w, const Facade *f, int slot, const i
     cell_triangle(w->cell, slot, last, b, a);
 }
 
-static void make_opening(const BuildingWork *w, const Facade *f, const Opening *o, int frame, int pane)
+static void make_opening(const BuildingWork *w, const Facade *f, const Opening *o, int frame, int pane,
+                         double set_back_m)
 {
     const double u0 = f->u[o->i], u1 = f->u[o->i + 1], v0 = f->v[o->j0], v1 = f->v[o->j1];
     const double rim_m = fmin(frame_m, 0.2 * fmin(u1 - u0, v1 - v0));
@@ -155,6 +156,18 @@ static void make_opening(const BuildingWork *w, const Facade *f, const Opening *
     for (int k = 0; k < rows; k++) side[k][0] = o->i, side[k][1] = o->j1 - k;
     frame_side(w, f, frame, (const int(*)[2])side, rows, in[3], in[0]);
     cell_face(w->cell, pane, (const double(*)[3])in, 4);
+}
+
+/* Soot on the wall over a burnt opening: a thin plate. */
+static void soot_over(const BuildingWork *w, const Facade *f, const Opening *o, int soot)
+{
+    const double next_m = o->j1 + 1 < f->rows ? f->v[o->j1 + 1] : w->top_m, from_m = f->v[o->j1] + 0.02;
+    const double to_m = fmin(from_m + 0.7 + 0.6 * record_random(w->b->id, 32 + (uint32_t)o->i), next_m - 0.05);
+    const double u = 0.5 * (f->u[o->i] + f->u[o->i + 1]), half_m = 0.45 * (f->u[o->i + 1] - f->u[o->i]);
+    double       p[3];
+    if (to_m < from_m + 0.1) return;
+    at_wall(p, w, f, u, 0, -0.005);
+    cell_box(w->cell, soot, p, f->along, half_m, 0.01, w->base_m + from_m, w->base_m + to_m);
 }
 
 /* ---- a wall --------------------------------------------------------------------------------------- */
@@ -192,12 +205,21 @@ static bool is_open(Opening *o, const BuildingWork *w, const Facade *f, int i, i
     return ground_over_floor(w, f, 0.5 * (c->u0 + c->u1)) < f->v[j] - 0.15;
 }
 
+/* Doors: of halls roller doors of sheet, in another colour than the wall. */
+static const char *leaf_material(const BuildingWork *w)
+{
+    const char *wall = fabric_material(w->b->wall_fabric, w->b->id);
+    if (w->b->use != BUILDING_HALL) return door_material(w->b->id);
+    return !strcmp(wall, "sheet_grey") || !strcmp(wall, "concrete_panel") ? "sheet_white" : "sheet_grey";
+}
+
 static void make_grid(BuildingWork *w, Facade *f)
 {
+    const bool   heated = w->b->heated && w->b->damage < 2;
     const int    frame = cell_part(w->cell, "window", frame_material(w->b->id), HEAT_PASSIVE);
-    const int    pane = cell_part(w->cell, "window", "glass_window", w->b->heated ? HEAT_WINDOW : HEAT_PASSIVE);
-    const int    door = cell_part(w->cell, "door", w->b->use == BUILDING_HALL ? "sheet_white" : door_material(w->b->id),
-                               w->b->heated ? HEAT_DWELLING : HEAT_PASSIVE);
+    const int    pane = cell_part(w->cell, "window", "glass_window", heated ? HEAT_WINDOW : HEAT_PASSIVE);
+    const int    door = cell_part(w->cell, "door", leaf_material(w), heated ? HEAT_DWELLING : HEAT_PASSIVE);
+    const int    soot = w->b->damage ? cell_part(w->cell, "wall", "masonry_sooted", HEAT_PASSIVE) : 0;
     const double normal[3] = {f->along[1], -f->along[0], 0};
     const int    nu = f->lines, nv = f->rows;
     double       p[3];
@@ -216,7 +238,12 @@ static void make_grid(BuildingWork *w, Facade *f)
         for (int i = 0; i + 1 < nu; i++) {
             Opening o;
             if (is_open(&o, w, f, i, j)) {
-                if (j == o.j0) make_opening(w, f, &o, frame, f->column[i / 2].door && j == 0 ? door : pane);
+                if (j != o.j0) continue;
+                /* what is broken: a dark hole */
+                const uint32_t stream = 256 + 64 * (uint32_t)f->number + (uint32_t)(7 * i + j);
+                const bool     broken = record_random(w->b->id, stream) < 0.4 * w->b->damage;
+                if (broken) make_opening(w, f, &o, soot, soot, broken_m), soot_over(w, f, &o, soot);
+                else make_opening(w, f, &o, frame, f->column[i / 2].door && j == 0 ? door : pane, pane_m);
                 continue;
             }
             const uint32_t *g = f->vertex + j * nu + i;
@@ -248,7 +275,7 @@ void building_walls(BuildingWork *w)
     static _Thread_local Facade f; /* 80 KB */
     const int                   front = front_of(w);
     for (int k = 0; k < w->n; k++) {
-        f.a = w->p[k], f.b = w->p[(k + 1) % w->n];
+        f.number = k, f.a = w->p[k], f.b = w->p[(k + 1) % w->n];
         f.length_m = hypot(f.b[0] - f.a[0], f.b[1] - f.a[1]);
         f.along[0] = (f.b[0] - f.a[0]) / f.length_m, f.along[1] = (f.b[1] - f.a[1]) / f.length_m;
         set_storeys(&f, w);
