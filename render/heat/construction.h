@@ -25,7 +25,7 @@ typedef enum ConstructionInside {
 } ConstructionInside;
 
 /* Elements of its columns: the first at the outer face and at each layer's, and their growth. */
-static const double wall_first_m = 0.003, wall_growth = 1.5;
+static const double wall_first_m = 0.003, wall_growth = 1.3;
 
 enum { construction_most_layers = column_most_layers, construction_most = 128 };
 

@@ -16,6 +16,7 @@ typedef struct SceneryWall {
     WallKind      kind;
     ColumnFactors factors[2][heat_halvings]; /* of step_s and of half hours, and of their halves */
     bool         *used;                      /* [columns]: some part faces there; others are not stepped */
+    size_t        first;                     /* of its temperatures in WallsState.temp_k: face by face that is used */
     float         memory[heat_day_slots];    /* K now for 1 W/m2 over a half hour so many half hours ago */
 } SceneryWall;
 
@@ -26,7 +27,7 @@ typedef struct WallsState {
     int64_t      index; /* time of the grid */
     double       day_k; /* a day's mean of the air */
     GroundColumn about[about_columns];
-    ColumnState *face;                        /* [walls * columns] */
+    double      *temp_k;                      /* [temps]: of all nodes of the faces of all walls */
     double       room_k[scenery_most_walls];  /* of unheated rooms */
     float        direct_w_m2[heat_day_slots]; /* facing the sun, by half hours of UTC */
 } WallsState;
@@ -41,6 +42,7 @@ typedef struct WallsTable {
 typedef struct SceneryWalls {
     const SceneryHeatConfig *config;
     int                      count, columns;
+    size_t                   temps;
     SceneryWall             *wall; /* [count] */
     Column                   layers[about_columns];
     ColumnFactors            factors[2][about_columns][heat_halvings];

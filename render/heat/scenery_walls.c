@@ -44,12 +44,18 @@ static void room_columns(int out[room_faces], int facets)
     out[0] = last, out[1] = last * facets + last, out[2] = last * facets, out[3] = 0, out[4] = facets * facets / 2;
 }
 
-static double inner_mean_k(const SceneryWalls *w, const SceneryWall *wall, const ColumnState *face)
+/* Its innermost nodes there. */
+static double inner_mean_k(const SceneryWalls *w, const SceneryWall *wall, const double *temp_k)
 {
-    int    at[room_faces];
-    double sum = 0;
+    const int nodes = wall->kind.column.nodes;
+    int       at[room_faces];
+    double    sum = 0;
     room_columns(at, w->config->heat.facets);
-    for (int k = 0; k < room_faces; k++) sum += face[at[k]].temp_k[wall->kind.column.nodes - 1];
+    for (int c = 0; c < w->columns; c++) {
+        if (!wall->used[c]) continue;
+        for (int k = 0; k < room_faces; k++) sum += at[k] == c ? temp_k[nodes - 1] : 0;
+        temp_k += nodes;
+    }
     return sum / room_faces;
 }
 
@@ -72,22 +78,28 @@ static void step_wall(void *user, int worker, int task)
     const WallJob     *job = user;
     SceneryWalls      *w = job->walls;
     SceneryWall       *wall = &w->wall[task];
-    ColumnState       *face = w->now.face + (size_t)task * (size_t)w->columns;
+    double            *temp_k = w->now.temp_k + wall->first;
+    const int          nodes = wall->kind.column.nodes;
     const HeatConfig  *c = &w->config->heat;
     const double       middle_s = (double)w->now.index * c->step_s + 0.5 * job->dt_s;
     const double       air_k = 0.5 * (job->before.weather->air.temp_k + job->after.weather->air.temp_k);
     const Construction *of = &wall->kind.of;
     const double behind_k = wall_behind_k(of, solar_hour(w, middle_s), w->now.day_k, air_k, w->now.room_k[task]);
     (void)worker;
+    ColumnState state = {.halved = 0};
     for (int k = 0; k < w->columns; k++) {
         const WallFace at = face_of(w, k);
-        if (wall->used[k])
-            wall_step(&face[k], &wall->kind, wall->factors[job->dt_s > c->step_s], &job->before, &job->after, &at,
-                      behind_k, c->grid.tolerance_k, job->dt_s);
+        if (!wall->used[k]) continue;
+        memcpy(state.temp_k, temp_k, (size_t)nodes * sizeof *temp_k);
+        wall_step(&state, &wall->kind, wall->factors[job->dt_s > c->step_s], &job->before, &job->after, &at, behind_k,
+                  c->grid.tolerance_k, job->dt_s);
+        memcpy(temp_k, state.temp_k, (size_t)nodes * sizeof *temp_k);
+        temp_k += nodes;
     }
     if (of->inside == BEHIND_UNHEATED)
         w->now.room_k[task] =
-            wall_room_step(of, w->now.room_k[task], inner_mean_k(w, wall, face), air_k, job->dt_s);
+            wall_room_step(of, w->now.room_k[task], inner_mean_k(w, wall, w->now.temp_k + wall->first), air_k,
+                           job->dt_s);
 }
 
 static double about_mean_k(const GroundColumn about[about_columns])
@@ -144,7 +156,7 @@ static void work_ahead(SceneryWalls *w, int parts)
     }
 }
 
-void scenery_walls_ahead(SceneryWalls *w) { work_ahead(w, 1 + w->count / 8); }
+void scenery_walls_ahead(SceneryWalls *w) { work_ahead(w, 2); }
 
 /* ---- tables ------------------------------------------------------------------------------------ */
 
@@ -175,7 +187,12 @@ static void fill_table(SceneryWalls *w, WallsTable *out)
         const size_t       first = (size_t)i * (size_t)w->columns;
         out->behind_k[i] =
             wall_behind_k(&wall->kind.of, solar_hour(w, now_s), w->now.day_k, out->air_k, w->now.room_k[i]);
-        for (int c = 0; c < w->columns; c++) out->face_k[first + (size_t)c] = (float)w->now.face[first + (size_t)c].temp_k[0];
+        const double *temp_k = w->now.temp_k + wall->first;
+        for (int c = 0; c < w->columns; c++) {
+            if (!wall->used[c]) continue;
+            out->face_k[first + (size_t)c] = (float)temp_k[0];
+            temp_k += wall->kind.column.nodes;
+        }
         fill_unused(w, wall, out->face_k + first);
         for (int age = 0; age < heat_day_slots; age++) {
             const int half = half_hour_of(now_s - age * slot_s), slot = w->slot_of[half];
@@ -200,10 +217,10 @@ static void next_table(SceneryWalls *w)
 
 static void copy_state(WallsState *out, const WallsState *from, const SceneryWalls *w)
 {
-    ColumnState *face = out->face;
-    memcpy(face, from->face, (size_t)w->count * (size_t)w->columns * sizeof *face);
+    double *temp_k = out->temp_k;
+    memcpy(temp_k, from->temp_k, w->temps * sizeof *temp_k);
     *out = *from;
-    out->face = face;
+    out->temp_k = temp_k;
 }
 
 static void back_to_begun(SceneryWalls *w)
@@ -265,24 +282,23 @@ static void start_walls(SceneryWalls *w)
     for (int i = 0; i < w->count; i++) {
         const SceneryWall  *wall = &w->wall[i];
         const Construction *of = &wall->kind.of;
-        ColumnState        *face = w->now.face + (size_t)i * (size_t)w->columns;
-        double              behind_k = 0;
+        double             *temp_k = w->now.temp_k + wall->first, behind_k = 0;
+        ColumnState         state;
         const bool          room = of->inside == BEHIND_UNHEATED;
         for (int h = 0; h < 24; h++) behind_k += wall_behind_k(of, h + 0.5, air_k, air_k, air_k) / 24;
         const double through = room ? 0 : wall_conductance_w_m2k(&wall->kind);
         for (int k = 0; k < w->columns; k++) {
             const WallFace facing = face_of(w, k);
-            if (!wall->used[k]) {
-                column_start(&face[k], &wall->kind.column, air_k);
-                continue;
-            }
+            if (!wall->used[k]) continue;
             for (int t = 0; t < count; t++)
                 wall_flux(&flux[t], &wall->kind, &(WallPlace){&at[t], ground_k[t], w->ground_rho}, &facing);
             const double outer_k = steady_k(flux, count, through, behind_k, air_k);
-            if (room) column_start(&face[k], &wall->kind.column, outer_k);
-            else wall_start(&face[k], &wall->kind, outer_k, behind_k);
+            if (room) column_start(&state, &wall->kind.column, outer_k);
+            else wall_start(&state, &wall->kind, outer_k, behind_k);
+            memcpy(temp_k, state.temp_k, (size_t)wall->kind.column.nodes * sizeof *temp_k);
+            temp_k += wall->kind.column.nodes;
         }
-        w->now.room_k[i] = room ? inner_mean_k(w, wall, face) : behind_k;
+        w->now.room_k[i] = room ? inner_mean_k(w, wall, w->now.temp_k + wall->first) : behind_k;
     }
 }
 
@@ -323,10 +339,6 @@ static Status open_walls(SceneryWalls *w, const Materials *materials)
     const HeatConfig *c = &w->config->heat;
     const size_t      faces = (size_t)w->count * (size_t)w->columns;
     Status            status = STATUS_OK;
-    w->now.face = calloc(faces + 1, sizeof *w->now.face);
-    w->begun.face = calloc(faces + 1, sizeof *w->begun.face);
-    for (int k = 0; k < 2; k++) w->table[k].face_k = calloc(faces + 1, sizeof *w->table[k].face_k);
-    if (!w->now.face || !w->begun.face || !w->table[0].face_k || !w->table[1].face_k) return STATUS_NO_MEMORY;
     for (int i = 0; i < w->count && status == STATUS_OK; i++) {
         SceneryWall *wall = &w->wall[i];
         status = wall_kind(&wall->kind, &w->config->constructions->row[wall->row], &materials->material[wall->material]);
@@ -338,7 +350,13 @@ static Status open_walls(SceneryWalls *w, const Materials *materials)
         for (int k = 0; k < room_faces; k++) wall->used[room[k]] = true;
         for (int k = c->facets * c->facets; k < w->columns; k++) wall->used[k] = true;
         find_memory(wall);
+        wall->first = w->temps;
+        for (int k = 0; k < w->columns; k++) w->temps += wall->used[k] ? (size_t)wall->kind.column.nodes : 0;
     }
+    w->now.temp_k = calloc(w->temps + 1, sizeof *w->now.temp_k);
+    w->begun.temp_k = calloc(w->temps + 1, sizeof *w->begun.temp_k);
+    for (int k = 0; k < 2; k++) w->table[k].face_k = calloc(faces + 1, sizeof *w->table[k].face_k);
+    if (!w->now.temp_k || !w->begun.temp_k || !w->table[0].face_k || !w->table[1].face_k) return STATUS_NO_MEMORY;
     double absorbed = 0;
     for (int k = 0; k < about_columns && status == STATUS_OK; k++) {
         const GroundKind *kind = &w->config->ground->kind[k == about_paved ? SURFACE_BUILT : SURFACE_GRASS];
@@ -387,10 +405,7 @@ static void walls_kept(Kept *kept, void *user)
         kept_doubles(kept, s->about[k].state.temp_k, (size_t)w->layers[k].nodes);
         kept_doubles(kept, &s->about[k].saturation, 1);
     }
-    for (int i = 0; i < w->count; i++)
-        for (int c = 0; c < w->columns; c++)
-            kept_doubles(kept, s->face[(size_t)i * (size_t)w->columns + (size_t)c].temp_k,
-                         (size_t)w->wall[i].kind.column.nodes);
+    kept_doubles(kept, s->temp_k, w->temps);
     kept_doubles(kept, s->room_k, (size_t)w->count);
     kept_doubles(kept, &s->day_k, 1);
     kept_floats(kept, s->direct_w_m2, heat_day_slots);
@@ -426,7 +441,7 @@ void scenery_walls_close(SceneryWalls *w)
 {
     for (int i = 0; w->wall && i < w->count; i++) free(w->wall[i].used);
     for (int k = 0; k < 2; k++) free(w->table[k].face_k);
-    free(w->wall), free(w->now.face), free(w->begun.face), free(w->course.at);
+    free(w->wall), free(w->now.temp_k), free(w->begun.temp_k), free(w->course.at);
     *w = (SceneryWalls){0};
 }
 
@@ -451,5 +466,6 @@ double scenery_walls_share(const SceneryWalls *w, double unix_s)
 
 size_t scenery_walls_bytes(const SceneryWalls *w)
 {
-    return (size_t)w->count * (sizeof *w->wall + (size_t)w->columns * (2 * sizeof *w->now.face + 2 * sizeof(float) + 1));
+    return (size_t)w->count * (sizeof *w->wall + (size_t)w->columns * (2 * sizeof(float) + 1)) +
+           2 * w->temps * sizeof(double);
 }
