@@ -214,7 +214,9 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
     const size_t   a = pixel_index(job, xa, ya), b = pixel_index(job, xb, yb);
     const bool     part = p->part[a] || p->part[b], plants = !part && p->instance && (p->instance[a] || p->instance[b]);
     const bool     entity = p->entity[a] || p->entity[b];
-    const unsigned edge = entity ? refine_all : refine_step; /* scenery is what targets stand before */
+    const unsigned edge = entity ? refine_all
+                          : part ? refine_scenery
+                                 : refine_step; /* scenery is what targets stand before */
     const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
     if (sky_a && sky_b) return 0;
     if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return edge;
@@ -330,7 +332,7 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, const Tile *tile
             const bool       smoothed = leafy && !(flag & refine_leaves);
             if (smoothed) flag &= ~(unsigned)(refine_sun | refine_ground);
             if (job->request->samples > 1)
-                flag &= ~(unsigned)(refine_step | refine_plants | refine_ground); /* all flags set */
+                flag &= ~(unsigned)(refine_step | refine_scenery | refine_plants | refine_ground); /* all flags set */
             ask[at] = grounds && !(flag & refine_all) && !smoothed &&
                       job->picture->cover[pixel_index(job, x, y)] != SURFACE_NONE;
             any |= ask[at];

@@ -262,12 +262,13 @@ void sampling_fill_tile(void *job, int worker, int task);
 /* Refinement that a pixel needs. What only the shadow-sensitive bands need must not affect the others, whose bits
  * would then depend on the requested bands; and bare ground must stay cheap. */
 typedef enum RefineFlag {
-    refine_all = 1,     /* edge_samples a side, every band */
-    refine_step = 2,    /* 2 a side, each split by ground class; every band: a crest of the ground, the horizon */
-    refine_sun = 4,     /* edge_samples a side, optical and MWIR: the edge of a shadow */
-    refine_ground = 8,  /* the plane of the existing hit, split by ground class, no ray; not the radar */
-    refine_plants = 16, /* leaf_samples a side, which join the first one; every band: plants about a target */
-    refine_leaves = 32, /* a mark: plants are refined here */
+    refine_all = 1,      /* edge_samples a side, every band */
+    refine_step = 2,     /* 2 a side, each split by ground class; every band: a crest of the ground, the horizon */
+    refine_sun = 4,      /* edge_samples a side, optical and MWIR: the edge of a shadow */
+    refine_ground = 8,   /* the plane of the existing hit, split by ground class, no ray; not the radar */
+    refine_plants = 16,  /* leaf_samples a side, which join the first one; every band: plants about a target */
+    refine_leaves = 32,  /* a mark: plants are refined here */
+    refine_scenery = 64, /* 2 a side, which join the first one; every band: borders of scenery */
 } RefineFlag;
 
 /* Marks what is always refined: bounding boxes of medium-sized targets, and the ground where a target's shadow

@@ -2,6 +2,10 @@
 #include "render/trace/scenery/scenery_tracer_private.h"
 #include "render/trace/visibility/trace_entry.h"
 
+/* Not fmin and fmax, which compile to calls. */
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+static inline double larger(double a, double b) { return a > b ? a : b; }
+
 enum { few_objects = 6 }; /* that a block may meet: tested one after the other, all rays together */
 
 typedef struct SceneryFound {
@@ -72,8 +76,8 @@ static bool pyramid_of(Planes *out, const Bundle *b, const double *limit_m)
         const double d[3] = {b->d[0][i], b->d[1][i], b->d[2][i]}, along = v3_dot(d, axis);
         if (!(along > 0.1)) return false;
         const double slope[2] = {v3_dot(d, u) / along, v3_dot(d, v) / along};
-        for (int k = 0; k < 2; k++) low[k] = fmin(low[k], slope[k]), high[k] = fmax(high[k], slope[k]);
-        far_m = fmax(far_m, limit_m[i]);
+        for (int k = 0; k < 2; k++) low[k] = smaller(low[k], slope[k]), high[k] = larger(high[k], slope[k]);
+        far_m = larger(far_m, limit_m[i]);
     }
     out->count = 0;
     add_plane(out, axis[0], axis[1], axis[2], eye, margin_m);
@@ -101,7 +105,7 @@ static void prism_of(Planes *out, const Bundle *b, const double way[3])
         const double o[3] = {b->o[0][i], b->o[1][i], b->o[2][i]};
         for (int k = 0; k < 3; k++) {
             const double at = v3_dot(o, side[k]);
-            low[k] = fmin(low[k], at), high[k] = fmax(high[k], at);
+            low[k] = smaller(low[k], at), high[k] = larger(high[k], at);
         }
     }
     out->count = 0;
