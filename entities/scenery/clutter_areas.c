@@ -16,7 +16,7 @@ static bool fits(const ClutterWork *work, const ClutterThing *t)
 {
     const ClutterRow *row = &work->table.row[t->row];
     return clutter_in_square(work->config, t->x_m, t->y_m, clutter_margin_m) &&
-           clutter_area_at(work->config->landscape, t->x_m, t->y_m) == row->where &&
+           clutter_is_area(work->config->landscape, row->where, t->x_m, t->y_m) &&
            clutter_can_stand(work->spots, t->x_m, t->y_m, t->heading_rad, work->variant[t->variant].size_m);
 }
 
@@ -28,7 +28,7 @@ static Status place_group(ClutterWork *work, int r, uint64_t h, double x_m, doub
     /* members of a group are of one kind and size: a flock, a heap of bales */
     const int variant = clutter_variant_of(work, r, h);
     Status    status = STATUS_OK;
-    if (count > 1 && clutter_area_at(work->config->landscape, x_m, y_m) != row->where) return STATUS_OK;
+    if (count > 1 && !clutter_is_area(work->config->landscape, row->where, x_m, y_m)) return STATUS_OK;
     for (int k = 0; k < count && status == STATUS_OK; k++) {
         const uint64_t of = invented_hash(h, k, 5);
         double         off[2] = {0, 0};

@@ -178,16 +178,26 @@ static ClutterWhere area_of(SurfaceClass surface)
     }
 }
 
-ClutterWhere clutter_area_at(const Landscape *landscape, double x_m, double y_m)
+/* Whether others of the areas begin within clutter_edge_m of a place of an area. */
+static bool is_edge(const Landscape *landscape, ClutterWhere area, double x_m, double y_m)
+{
+    const double x[4] = {x_m - clutter_edge_m, x_m + clutter_edge_m, x_m, x_m};
+    const double y[4] = {y_m, y_m, y_m - clutter_edge_m, y_m + clutter_edge_m};
+    uint8_t      surface[4];
+    landscape_surfaces(surface, landscape, 4, x, y);
+    for (int k = 0; k < 4; k++) {
+        const ClutterWhere other = area_of((SurfaceClass)surface[k]);
+        if (other != area && other != CLUTTER_PLACES) return true;
+    }
+    return false;
+}
+
+bool clutter_is_area(const Landscape *landscape, ClutterWhere where, double x_m, double y_m)
 {
     const ClutterWhere area = area_of(landscape_surface(landscape, x_m, y_m));
-    if (area != CLUTTER_IN_FIELD && area != CLUTTER_IN_PASTURE) return area;
-    for (int k = 0; k < 4; k++) {
-        const double       dx = k < 2 ? clutter_edge_m * (2 * k - 1) : 0, dy = k < 2 ? 0 : clutter_edge_m * (2 * k - 5);
-        const ClutterWhere other = area_of(landscape_surface(landscape, x_m + dx, y_m + dy));
-        if (other != area && other != CLUTTER_PLACES) return CLUTTER_AT_EDGE;
-    }
-    return area;
+    const bool         farmed = area == CLUTTER_IN_FIELD || area == CLUTTER_IN_PASTURE;
+    if (where == CLUTTER_AT_EDGE) return farmed && is_edge(landscape, area, x_m, y_m);
+    return area == where && !(farmed && is_edge(landscape, area, x_m, y_m));
 }
 
 /* ---- standing ----------------------------------------------------------------------------------- */

