@@ -80,16 +80,16 @@ with tempfile.TemporaryDirectory() as folder:
     for number in range(10):  # a target of 6 x 4 pixels that is hottest in six frames, a car in three, the ground in one
         lwir = numpy.full((60, 80), 10, numpy.float32) + 0.01 * random.random((60, 80)).astype(numpy.float32)
         zero = numpy.zeros((60, 80), numpy.uint32)
-        entity, scenery, instance = zero.copy(), zero.copy(), zero.copy()
+        entity, part, instance = zero.copy(), zero.copy(), zero.copy()
         entity[30:34, 40:46] = 1
         lwir[30:34, 40:46] = 12
-        scenery[10:12, 10:14] = 5
+        instance[10:12, 10:14], part[10:12, 10:14] = 5, 2
         lwir[10:12, 10:14] = 13 if number < 3 else 11
         lwir[50, 70] = 14 if number == 9 else 10
         instance[32, 0:80] = 7
-        instance[entity > 0] = 0
+        instance[entity > 0], part[entity > 0] = 0, 1
         write_exr(out / f'frames/lwir/{number:06d}.exr', {'Y': lwir})
-        write_exr(out / f'frames/truth/{number:06d}.exr', {'entity': entity, 'scenery': scenery, 'instance': instance, 'material': zero + 1})
+        write_exr(out / f'frames/truth/{number:06d}.exr', {'entity': entity, 'part': part, 'instance': instance, 'material': zero + 1})
         lines.append(json.dumps({'frame': number, 'targets': [], 'clutter': [{'object': 5, 'class': 'car'}],
                                  'sensors': [{'width_px': 80, 'hfov_deg': 8}]}))
     (out / 'truth.jsonl').write_text('\n'.join(lines))
