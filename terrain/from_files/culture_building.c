@@ -1,6 +1,6 @@
 /* terrain/from_files/culture_building.c: heights, roof and fabrics of a building, from what its attributes say and,
  * where they say nothing, its use and size. */
-#include "terrain/from_files/culture_private.h"
+#include "terrain/from_files/culture_import_private.h"
 
 static const double storey_m = 3;
 

@@ -1,5 +1,5 @@
 /* terrain/from_files/culture_rules.c: etc/culture_tags.csv: what attributes mean, and what those of a feature say. */
-#include "terrain/from_files/culture_private.h"
+#include "terrain/from_files/culture_import_private.h"
 #include "pitviper_table.h"
 
 #include <stdlib.h>

@@ -15,9 +15,9 @@ typedef struct WoodsClearings {
     uint32_t  *item;
 } WoodsClearings;
 
-/* Crowns of a terrain store, listed by squares. */
+/* Crowns of a terrain store, or trees of culture, listed by squares. */
 typedef struct WoodsCrowns {
-    uint32_t *first; /* [nx * ny + 1] by the woods' squares; NULL: no crowns */
+    uint32_t *first; /* [nx * ny + 1] by the woods' squares; NULL: there are none */
     uint32_t *item;
     double    low[2], high[2]; /* box about the crowns, in which they were looked for */
 } WoodsCrowns;
@@ -29,7 +29,7 @@ typedef struct WoodsSource {
     TerrainStore     store;
     bool             has_store, synthetic;
     WoodsClearings   clearings;
-    WoodsCrowns      crowns;
+    WoodsCrowns      crowns, trees;
     double           origin_enu[3];
     int64_t          i0, j0; /* number of the first square */
     int              nx, ny;
@@ -89,7 +89,7 @@ Status woods_keep_nearest(Woods *out, const WoodsSource *s, SquarePlants *square
 Status woods_source_open(WoodsSource **out, const Landscape *landscape, const WoodsConfig *config, double half_width_m);
 void   woods_source_free(WoodsSource *s); /* accepts NULL */
 /* A key of everything that the standing plants follow from. */
-CacheKey woods_key(const char *what, const WoodsConfig *config);
+CacheKey woods_key(const char *what, const WoodsConfig *config, const Landscape *landscape);
 
 /* woods_page.c: opens what woods_page needs, or nothing where there are no pages. */
 Status woods_pages_open(Woods *out, const WoodsConfig *config);

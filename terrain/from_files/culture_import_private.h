@@ -1,7 +1,7 @@
-/* terrain/from_files/culture_private.h: from attributes and places of files to records of culture: what its parts
+/* terrain/from_files/culture_import_private.h: from attributes and places of files to records of culture: what its parts
  * share. */
-#ifndef TERRAIN_FROM_FILES_CULTURE_PRIVATE_H
-#define TERRAIN_FROM_FILES_CULTURE_PRIVATE_H
+#ifndef TERRAIN_FROM_FILES_CULTURE_IMPORT_PRIVATE_H
+#define TERRAIN_FROM_FILES_CULTURE_IMPORT_PRIVATE_H
 
 #include "terrain/elevation/vector.h"
 #include "terrain/from_files/culture_import.h"
