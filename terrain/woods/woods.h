@@ -2,11 +2,13 @@
  * (canopy height, canopy cover, crowns), of the tracks to be left clear, and of the seed.
  *
  * Trees, bushes and hedges are listed once; grass, reeds, crops and stones, which only matter near the eye, are handed
- * out square by square. None of them stand on roads, tracks, water, roofs or where a vehicle was reported. */
+ * out square by square. None of them stand on roads, tracks, water, roofs or where a vehicle was reported, nor in or
+ * beside what is built. */
 #ifndef TERRAIN_WOODS_WOODS_H
 #define TERRAIN_WOODS_WOODS_H
 
 #include "pitviper_cache.h"
+#include "terrain/culture/culture.h"
 #include "terrain/ground/landscape.h"
 #include "terrain/surface.h"
 #include "terrain/woods/plant.h"
@@ -35,11 +37,15 @@ typedef struct WoodsConfig {
     const WoodsPath *path;       /* paths that are cleared of plants */
     double           far_half_m; /* half width of the square about the centre of which woods_page tells more plants;
                                   * not above half_width_m: none; at most 50000 */
-    Cache      *cache;           /* where the standing plants and pages are kept; NULL: nowhere */
-    const char *follows; /* what the landscape and the tables follow from, as a text; NULL: not known: not kept */
+    /* what is built, indexed, and borrowed as long as the woods are: no standing plant within woods_built_m of it, no
+     * low one in buildings or on yards; NULL: nothing */
+    const Culture *culture;
+    Cache         *cache;   /* where the standing plants and pages are kept; NULL: nowhere */
+    const char    *follows; /* what the landscape and the tables follow from, as a text; NULL: not known: not kept */
 } WoodsConfig;
 
 enum { woods_most_trees = 4000000 };
+static const double woods_built_m = 1.5;
 
 /* Squares of standing plants, for look-ups by place: the plants of square (i, j), whose south-west corner is at origin
  * + woods_square_m (i, j), are plant[first[j * nx + i]] .. plant[first[j * nx + i + 1] - 1]. */

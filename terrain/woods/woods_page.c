@@ -38,7 +38,7 @@ Status woods_pages_open(Woods *out, const WoodsConfig *config)
     out->pages_y = (int)(page_before(s->j0 + s->ny - 1) - j0 + 1);
     out->pages_enu[0] = (double)i0 * woods_page_m, out->pages_enu[1] = (double)j0 * woods_page_m;
     if (config->cache && config->follows) {
-        CacheKey     key = woods_key("pages of woods", config, out->landscape);
+        CacheKey     key = woods_key("pages of woods", config);
         const double half_m = config->far_half_m;
         cache_key_add(&key, &half_m, sizeof half_m);
         if (sha256_end(pages->name, key.digest, key.good) == STATUS_OK) pages->cache = config->cache;

@@ -15,9 +15,9 @@ typedef struct WoodsClearings {
     uint32_t  *item;
 } WoodsClearings;
 
-/* Crowns of a terrain store, or trees of culture, listed by squares. */
+/* Crowns of a terrain store, listed by squares. */
 typedef struct WoodsCrowns {
-    uint32_t *first; /* [nx * ny + 1] by the woods' squares; NULL: there are none */
+    uint32_t *first; /* [nx * ny + 1] by the woods' squares; NULL: no crowns */
     uint32_t *item;
     double    low[2], high[2]; /* box about the crowns, in which they were looked for */
 } WoodsCrowns;
@@ -25,11 +25,12 @@ typedef struct WoodsCrowns {
 typedef struct WoodsSource {
     uint64_t         seed;
     const Landscape *landscape;
+    const Culture   *culture; /* NULL: nothing is built */
     WoodsTable       table;
     TerrainStore     store;
     bool             has_store, synthetic;
     WoodsClearings   clearings;
-    WoodsCrowns      crowns, trees;
+    WoodsCrowns      crowns;
     double           origin_enu[3];
     int64_t          i0, j0; /* number of the first square */
     int              nx, ny;
@@ -49,14 +50,16 @@ static inline double woods_unit(uint64_t hash) { return (double)(hash >> 11) * 0
 
 /* Draws lean, twist and width of a plant of a given kind and height; all but p_m is set. */
 Plant woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double width);
-/* Whether the ground bears a trunk: it does not on roads, tracks, water, roofs and clearings. For many places of one
- * square at once; bears[count]: 1 or 0. */
+/* Whether the ground bears a trunk: it does not on roads, tracks, water, roofs, clearings and what is built. For many
+ * places of one square at once; bears[count]: 1 or 0. */
 void woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m,
                  bool low);
 
 Status woods_clearings_create(WoodsClearings *out, const WoodsSource *s, const WoodsConfig *config);
-bool   woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double room_m, bool low);
-void   woods_clearings_free(WoodsClearings *c);
+/* Whether something built leaves no room for a plant. */
+bool woods_is_built_on(const WoodsSource *s, double x_m, double y_m, bool low);
+bool woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double room_m, bool low);
+void woods_clearings_free(WoodsClearings *c);
 
 /* The standing plants of one square; positions are relative to the woods' origin. */
 typedef struct SquarePlants {
@@ -89,7 +92,7 @@ Status woods_keep_nearest(Woods *out, const WoodsSource *s, SquarePlants *square
 Status woods_source_open(WoodsSource **out, const Landscape *landscape, const WoodsConfig *config, double half_width_m);
 void   woods_source_free(WoodsSource *s); /* accepts NULL */
 /* A key of everything that the standing plants follow from. */
-CacheKey woods_key(const char *what, const WoodsConfig *config, const Landscape *landscape);
+CacheKey woods_key(const char *what, const WoodsConfig *config);
 
 /* woods_page.c: opens what woods_page needs, or nothing where there are no pages. */
 Status woods_pages_open(Woods *out, const WoodsConfig *config);

@@ -91,6 +91,17 @@ void woods_clearings_free(WoodsClearings *c)
     memset(c, 0, sizeof *c);
 }
 
+/* ---- what is built ------------------------------------------------------------------------------ */
+
+bool woods_is_built_on(const WoodsSource *s, double x_m, double y_m, bool low)
+{
+    static const double wall_m = 0.1; /* grass grows up to walls */
+    if (!s->culture) return false;
+    if (!low) return culture_is_near(s->culture, x_m, y_m, woods_built_m);
+    return culture_building_at(s->culture, x_m, y_m, wall_m) >= 0 ||
+           culture_surface_at(s->culture, x_m, y_m) != SURFACE_NONE;
+}
+
 /* ---- surfaces --------------------------------------------------------------------------------- */
 
 static bool surface_bears(uint8_t surface)
@@ -110,14 +121,11 @@ void woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *
         const int n = count - first < some ? count - first : some;
         for (int k = 0; k < n; k++) {
             WayPlace way;
-            bears[first + k] = !woods_is_cleared(&s->clearings, x_m[first + k], y_m[first + k], room_m, low);
+            bears[first + k] = !woods_is_cleared(&s->clearings, x_m[first + k], y_m[first + k], room_m, low) &&
+                               !woods_is_built_on(s, x_m[first + k], y_m[first + k], low);
             if (!landscape_way(&way, s->landscape, x_m[first + k], y_m[first + k])) continue;
             bears[first + k] &= fabs(way.across_m) > way.half_m + way_room_m + room_m;
         }
-        const Culture *culture = s->landscape->culture;
-        for (int k = 0; culture && k < n; k++)
-            if (bears[first + k])
-                bears[first + k] = !culture_is_near(culture, x_m[first + k], y_m[first + k], fmax(room_m, 0));
         for (int q = 0; q < 4; q++) {
             for (int k = 0; k < n; k++) {
                 x[k] = x_m[first + k] + side[q][0] * (room_m + way_room_m);
@@ -249,27 +257,12 @@ static void add_crowns(SquarePlants *out, const WoodsSource *s, int i, int j)
         uint8_t        surface;
         landscape_surfaces(&surface, s->landscape, 1, &x_m, &y_m);
         if (surface == SURFACE_WATER || surface == SURFACE_ROAD || !(crown->height_m > 0.5f)) continue;
-        if (woods_is_cleared(&s->clearings, x_m, y_m, 0, false)) continue;
+        if (woods_is_cleared(&s->clearings, x_m, y_m, 0, false) || woods_is_built_on(s, x_m, y_m, false)) continue;
         const PlantKind kind = crown->height_m < 3 ? PLANT_BUSH : kind_at(s, shares_of(s, surface), x_m, y_m, hash);
         const double    width = (double)crown->radius_m / ((double)crown->height_m * plant_crown_share(kind));
         woods_add_plant(out, s, woods_draw_plant(hash, kind, (double)crown->height_m, clamp(width, 0.4, 1.99)), x_m,
                         y_m);
         out->from_crowns++;
-    }
-}
-
-/* Trees of culture stand where and as its files say, whatever the ground is. */
-static void add_trees(SquarePlants *out, const WoodsSource *s, int i, int j)
-{
-    static const double mean_m[PLANT_STANDING] = {20, 18, 17, 19, 20, 19, 19, 2, 1.5}; /* as in etc/woods.csv */
-    const size_t        n = (size_t)j * (size_t)s->nx + (size_t)i;
-    for (uint32_t k = s->trees.first[n]; k < s->trees.first[n + 1]; k++) {
-        const CultureTree *t = &s->landscape->culture->tree[s->trees.item[k]];
-        const uint64_t     hash = woods_hash(s->seed, (int64_t)t->id, 0, 75);
-        if (t->kind >= PLANT_STANDING || woods_is_cleared(&s->clearings, t->x_m, t->y_m, 0, false)) continue;
-        const double height_m = t->height_m > 0 ? (double)t->height_m : mean_m[t->kind];
-        const double width = t->kind == PLANT_HEDGE ? clamp(1.5 / (height_m * plant_crown_share(PLANT_HEDGE)), 0.6, 1.99) : 1;
-        woods_add_plant(out, s, woods_draw_plant(hash, (PlantKind)t->kind, height_m, width), t->x_m, t->y_m);
     }
 }
 
@@ -416,7 +409,6 @@ void woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j)
     for (int k = 0; k < square_cells; k++) c.hash[k] = woods_candidate(&c.x_m[k], &c.y_m[k], s, i, j, k);
     landscape_surfaces(c.surface, s->landscape, square_cells, c.x_m, c.y_m);
     if (s->crowns.first) add_crowns(out, s, i, j);
-    if (s->trees.first) add_trees(out, s, i, j);
     for (int k = 0; k < square_cells; k++) offer(&c, out, s, k);
     woods_bears(bears, s, c.count, c.x_m, c.y_m, 0.5, false);
     for (int k = 0; k < c.count; k++) {
