@@ -310,7 +310,7 @@ enum { config_paths_size = 4096 };
         "entities whose positions are inconsistent with it") \
     ROW(SWITCH, terrain., detail, true, "on|off", \
         "noise of the ground within each surface class (etc/ground_detail.csv); off: classes of one value") \
-    ROW(PATHS, terrain., buildings, "off", config_paths_size, \
+    ROW(NAME_OR_PATHS, terrain., buildings, "off", config_paths_size, \
         "files of buildings, walls, roads and power lines (GeoJSON, Shapefile, GeoPackage), separated by commas; invented: " \
         "villages, farms and works on synthetic terrain; off: none") \
     ROW(PATH, terrain., trees, "", 1024, \

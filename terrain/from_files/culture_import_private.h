@@ -56,7 +56,7 @@ typedef enum RuleMakes {
 } RuleMakes;
 
 typedef struct CultureRule {
-    char      key[32], value[48]; /* lower case */
+    char      key[32], value[48];
     int       makes;              /* RuleMakes */
     char      kind_name[24];
     int       kind; /* by makes: BuildingUse, CultureLineKind ..., an index of the words there; -1: empty */
@@ -100,9 +100,6 @@ static inline uint64_t culture_mix(uint64_t seed, const void *octets, size_t cou
 static const uint64_t culture_mix_seed = 0xcbf29ce484222325u;
 
 /* ---- culture_building.c ---- */
-
-/* Where a building's heights are from. */
-typedef enum HeightFrom { HEIGHT_STATED, HEIGHT_LEVELS, HEIGHT_USE } HeightFrom;
 
 /* All of a building but its outline, place and id, from its facts and its outline in ENU. mended: how many numbers
  * could not be a building's and were left aside. */

@@ -123,11 +123,11 @@ static unsigned coast_surfaces(int32_t surface[8], const Coast *coast, const dou
     return lanes;
 }
 
-/* Roads, tracks and waters of culture lie on whatever else there is. */
-static void lay_culture(uint8_t *surface, const Culture *culture, int count, const double *x_m, const double *y_m)
+/* What lies on the ground, such as roads, wherever there is ground. */
+static void lay_over(uint8_t *surface, const LandscapeOver *over, int count, const double *x_m, const double *y_m)
 {
     for (int k = 0; k < count; k++) {
-        const int laid = surface[k] == SURFACE_NONE ? SURFACE_NONE : culture_surface_at(culture, x_m[k], y_m[k]);
+        const int laid = surface[k] == SURFACE_NONE ? SURFACE_NONE : over->surface_at(over->of, x_m[k], y_m[k]);
         if (laid != SURFACE_NONE) surface[k] = (uint8_t)laid;
     }
 }
@@ -155,7 +155,7 @@ static void find_surfaces(uint8_t *surface, const Landscape *landscape, const Sl
         }
         for (int k = 0; k < some; k++) surface[first + k] = (uint8_t)found[k];
     }
-    if (landscape->culture) lay_culture(surface, landscape->culture, count, x_m, y_m);
+    if (landscape->over.of) lay_over(surface, &landscape->over, count, x_m, y_m);
 }
 
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
@@ -170,17 +170,18 @@ static bool looks_first(int side, int row, int column)
     return side < 8 ? (row + column) % 2 == 0 : row % 2 == 0 && (column + row / 2) % 2 == 0;
 }
 
-/* Whether a line of culture reaches into a square of places, which may be narrower than the pattern is wide. */
-static bool culture_reaches(const Landscape *landscape, int count, const double *x_m, const double *y_m)
+/* Whether something that lies on the ground reaches into a square of places: it may be narrower than the pattern is
+ * wide. */
+static bool something_lies(const LandscapeOver *over, int count, const double *x_m, const double *y_m)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    if (!landscape->culture) return false;
+    if (!over->of) return false;
     for (int k = 0; k < count; k++) {
         low[0] = fmin(low[0], x_m[k]), high[0] = fmax(high[0], x_m[k]);
         low[1] = fmin(low[1], y_m[k]), high[1] = fmax(high[1], y_m[k]);
     }
-    return culture_surface_near(landscape->culture, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]),
-                                0.5 * hypot(high[0] - low[0], high[1] - low[1]));
+    return over->surface_near(over->of, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]),
+                              0.5 * hypot(high[0] - low[0], high[1] - low[1]));
 }
 
 void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m,
@@ -192,7 +193,7 @@ void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int
     int          place[landscape_square_most], differ = 0;
     SlowNodes    nodes = {.known = false};
     assert(side * side <= landscape_square_most);
-    differ = culture_reaches(landscape, side * side, x_m, y_m);
+    differ = something_lies(&landscape->over, side * side, x_m, y_m);
     if (landscape_is_synthetic(landscape))
         invented_nodes(&nodes, &cover->invented, &landscape->elevation, side * side, x_m, y_m);
     for (int pass = 0; pass == 0 || (pass == 1 && differ); pass++) {
