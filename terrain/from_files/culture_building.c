@@ -30,7 +30,7 @@ void culture_rectangle(double side_m[2], double *along_rad, const double (*p)[2]
     }
     /* 0 .. pi: a line has no sense; of a square, whose sides are equal but for rounding, 0 .. pi / 2 */
     const double turn = side_m[0] - side_m[1] > 1e-6 * side_m[0] ? pi_rad : 0.5 * pi_rad;
-    *along_rad -= turn * floor(*along_rad / turn);
+    *along_rad -= turn * floor(*along_rad / turn + 1e-9);
 }
 
 /* ---- use ------------------------------------------------------------------------------------------- */
