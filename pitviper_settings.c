@@ -11,7 +11,15 @@
 
 static bool is_path(const Setting *row)
 {
-    return row->type == SETTING_PATH || row->type == SETTING_PATHS || row->type == SETTING_NAME_OR_PATH;
+    return row->type == SETTING_PATH || row->type == SETTING_PATHS || row->type == SETTING_NAME_OR_PATH ||
+           row->type == SETTING_NAME_OR_PATHS;
+}
+
+static bool is_several(SettingType type) { return type == SETTING_PATHS || type == SETTING_NAME_OR_PATHS; }
+
+static bool is_name(SettingType type, const char *value)
+{
+    return (type == SETTING_NAME_OR_PATH || type == SETTING_NAME_OR_PATHS) && !strpbrk(value, "/.");
 }
 
 int settings_find(const SettingTable *table, const char *name)
@@ -182,9 +190,9 @@ static bool place_paths(char *out, size_t out_size, SettingType type, const char
     bool         fits = true;
     assert(out_size <= sizeof made);
     for (const char *at = value; fits && *at;) {
-        const size_t blanks = type == SETTING_PATHS ? strspn(at, " ") : 0;
-        const size_t length = type == SETTING_PATHS ? strcspn(at, ",") : strlen(at);
-        const bool   name = type == SETTING_NAME_OR_PATH && !strpbrk(value, "/.");
+        const size_t blanks = is_several(type) ? strspn(at, " ") : 0;
+        const size_t length = is_several(type) ? strcspn(at, ",") : strlen(at);
+        const bool   name = is_name(type, value);
         const size_t before = blanks < length && at[blanks] != '/' && !name ? folder : 0;
         fits = n + before + length + (at[length] != 0) < out_size;
         if (!fits) break;
@@ -222,9 +230,9 @@ bool settings_paths_good(const void *from, const SettingTable *table, const char
         const Setting *row = &table->row[i];
         const char    *at = (const char *)from + row->offset;
         if (!is_path(row) || is_among(row->name, outputs)) continue;
-        if (row->type == SETTING_NAME_OR_PATH && !strpbrk(at, "/.")) continue;
+        if (is_name(row->type, at)) continue;
         while (*at) {
-            const size_t length = row->type == SETTING_PATHS ? strcspn(at, ",") : strlen(at);
+            const size_t length = is_several(row->type) ? strcspn(at, ",") : strlen(at);
             char         path[4096], why[file_why_size];
             struct stat  about;
             snprintf(path, sizeof path, "%.*s", (int)length, at);
@@ -244,11 +252,11 @@ void settings_absolute(void *out, const SettingTable *table)
         const Setting *row = &table->row[i];
         char          *at = (char *)out + row->offset, made[paths_most] = {0}, one[4096];
         size_t         n = 0;
-        if (!is_path(row) || !*at || (row->type == SETTING_NAME_OR_PATH && !strpbrk(at, "/."))) continue;
+        if (!is_path(row) || !*at || is_name(row->type, at)) continue;
         assert(row->size <= sizeof made);
         bool fits = true;
         for (const char *from = at; fits && *from;) {
-            const size_t length = row->type == SETTING_PATHS ? strcspn(from, ",") : strlen(from);
+            const size_t length = is_several(row->type) ? strcspn(from, ",") : strlen(from);
             char         path[4096];
             fits = length < sizeof path;
             if (!fits) break;
@@ -305,6 +313,7 @@ Status settings_store(void *out, const SettingTable *table, const Setting *row, 
     case SETTING_PATH:
     case SETTING_PATHS:
     case SETTING_NAME_OR_PATH:
+    case SETTING_NAME_OR_PATHS:
         if (!place_paths(at, row->size, row->type, value, file)) break;
         return STATUS_OK;
     case SETTING_WORDS:
@@ -378,6 +387,7 @@ static int value_text(char *out, size_t out_size, const Setting *row, const void
     case SETTING_PATH:
     case SETTING_PATHS:
     case SETTING_NAME_OR_PATH:
+    case SETTING_NAME_OR_PATHS:
         return snprintf(out, out_size, "%s", at);
     case SETTING_NUMBERS:
         list = (const NumberList *)at;

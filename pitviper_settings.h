@@ -19,6 +19,7 @@ typedef enum SettingType {
     SETTING_PATH,
     SETTING_PATHS,        /* several, separated by commas; in YAML a list too */
     SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is kept unchanged */
+    SETTING_NAME_OR_PATHS, /* the same, of one name or several paths */
     /* Read by the table's own function, in files alone; choices: what is accepted, for messages */
     SETTING_OWN,  /* one text; a list is its words with blanks between */
     SETTING_EACH, /* one text, or a list of them: one call each */
@@ -121,7 +122,7 @@ void settings_write_keys(FILE *to, const SettingTable *table);
  *     SWITCH                               words, help                  "on|off" or "off|on"
  *     CHOICE                               tag, words, help             makes `enum tag`, a value for each word
  *     TEXT                                 size, unit, help
- *     WORDS, PATH, PATHS, NAME_OR_PATH     size, help
+ *     WORDS, PATH, PATHS, NAME_OR_PATH, NAME_OR_PATHS     size, help
  *
  * All else is made of it: members, BOX_ROWS(SETTING_MEMBER) in a struct; initializers, {BOX_ROWS(SETTING_DEFAULT)}; and
  * the table, with `#define BOX_ROW(...) SETTING_ROW(Box, __VA_ARGS__)`: static const Setting keys[] =
@@ -140,6 +141,7 @@ void settings_write_keys(FILE *to, const SettingTable *table);
 #define SETTING_MEMBER_PATH                               SETTING_MEMBER_TEXT
 #define SETTING_MEMBER_PATHS                              SETTING_MEMBER_TEXT
 #define SETTING_MEMBER_NAME_OR_PATH                       SETTING_MEMBER_TEXT
+#define SETTING_MEMBER_NAME_OR_PATHS                      SETTING_MEMBER_TEXT
 #define SETTING_MEMBER_CHOICE(section, key, value, tag, words, help) enum tag { SETTING_EACH(VALUE, words) } key;
 
 #define SETTING_DEFAULT(kind, section, key, value, ...)   .section key = value,
@@ -159,6 +161,7 @@ void settings_write_keys(FILE *to, const SettingTable *table);
 #define SETTING_ROW_PATH                                  SETTING_ROW_WORDS
 #define SETTING_ROW_PATHS                                 SETTING_ROW_WORDS
 #define SETTING_ROW_NAME_OR_PATH                          SETTING_ROW_WORDS
+#define SETTING_ROW_NAME_OR_PATHS                         SETTING_ROW_WORDS
 #define SETTING_ROW_SWITCH(type, owner, section, key, value, words, help) \
     {#section #key, type, SETTING_AT(owner, section key), 0, 0, words, "", help},
 #define SETTING_ROW_CHOICE(type, owner, section, key, value, tag, words, help) \

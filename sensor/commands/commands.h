@@ -40,5 +40,7 @@ int rcs_command(int argc, char **argv);
 int terrain_command(int argc, char **argv);
 /* `pitviper terrain info STORE`, a part of it: what is in a terrain store, and pictures of it. */
 int terrain_info_command(int argc, char **argv);
+/* `pitviper terrain culture FILE...`, a part of it: what files of buildings, roads and trees hold. */
+int terrain_culture_command(int argc, char **argv);
 
 #endif

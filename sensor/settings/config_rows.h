@@ -310,13 +310,11 @@ enum { config_paths_size = 4096 };
         "entities whose positions are inconsistent with it") \
     ROW(SWITCH, terrain., detail, true, "on|off", \
         "noise of the ground within each surface class (etc/ground_detail.csv); off: classes of one value") \
-    ROW(PATHS, terrain., buildings, "off", config_paths_size, \
-        "buildings, walls, fences, lines and what else people built; off: none; invented: on the plots and along the " \
-        "ways of synthetic terrain; else vector files (GeoJSON, Shapefile, GeoPackage), separated by commas, or a " \
-        "list") \
+    ROW(NAME_OR_PATHS, terrain., buildings, "off", config_paths_size, \
+        "files of buildings, walls, roads and power lines (GeoJSON, Shapefile, GeoPackage), separated by commas; invented: " \
+        "villages, farms and works on synthetic terrain; off: none") \
     ROW(PATH, terrain., trees, "", 1024, \
-        "table of single trees (lat_deg, lon_deg or x_m, y_m; kind, height_m, marked), beside those of terrain.woods; " \
-        "empty: none") \
+        "table of trees (CSV): lat and lon, or x_m and y_m; kind, height_m, marked; empty: none") \
     ROW(DOUBLE, terrain., clutter, 0, 0, 20, "", \
         "civil vehicles, machines, animals, fires and rocks, by the densities of etc/clutter.csv times this; 0: none") \
     ROW(SWITCH, terrain., woods, true, "on|off", \

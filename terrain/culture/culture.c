@@ -151,10 +151,10 @@ Status culture_add_building(Culture *c, const Building *building, const double (
         c->left_out++;
         return STATUS_OK;
     }
-    for (int k = 0; area_m2 < 0 && k < left / 2; k++) {
+    for (int k = 1, n = left - 1; area_m2 < 0 && k < n; k++, n--) { /* the first corner stays the first */
         const double x_m = own[k][0], y_m = own[k][1];
-        own[k][0] = own[left - 1 - k][0], own[k][1] = own[left - 1 - k][1];
-        own[left - 1 - k][0] = x_m, own[left - 1 - k][1] = y_m;
+        own[k][0] = own[n][0], own[k][1] = own[n][1];
+        own[n][0] = x_m, own[n][1] = y_m;
     }
     c->building[c->buildings] = *building;
     c->building[c->buildings].first_corner = c->corners;

@@ -106,7 +106,7 @@ typedef struct WireFeature {
 
 typedef struct WireEnd {
     int64_t features;  /* all that were looked at */
-    int64_t outside;   /* features outside the box, where a file knows how many it has */
+    int64_t outside;   /* features outside the box, and without a place, where a file knows how many it has */
     int64_t shapeless; /* features without a geometry, or with one that is no point, line or polygon */
 } WireEnd;
 

@@ -1,6 +1,6 @@
 /* terrain/from_files/culture_building.c: heights, roof and fabrics of a building, from what its attributes say and,
  * where they say nothing, its use and size. */
-#include "terrain/from_files/culture_private.h"
+#include "terrain/from_files/culture_import_private.h"
 
 static const double storey_m = 3;
 
@@ -28,7 +28,9 @@ void culture_rectangle(double side_m[2], double *along_rad, const double (*p)[2]
         side_m[0] = fmax(u_m, v_m), side_m[1] = fmin(u_m, v_m);
         *along_rad = atan2(s, c) + (v_m > u_m ? 0.5 * pi_rad : 0);
     }
-    *along_rad -= pi_rad * floor(*along_rad / pi_rad); /* 0 .. pi: a line has no sense */
+    /* 0 .. pi: a line has no sense; of a square, whose sides are equal but for rounding, 0 .. pi / 2 */
+    const double turn = side_m[0] - side_m[1] > 1e-6 * side_m[0] ? pi_rad : 0.5 * pi_rad;
+    *along_rad -= turn * floor(*along_rad / turn + 1e-9);
 }
 
 /* ---- use ------------------------------------------------------------------------------------------- */
@@ -125,13 +127,13 @@ static HeightFrom set_heights(Building *b, const CultureFacts *f, double area_m2
     if (isnan(rise_m)) rise_m = rise_of(use, (RoofShape)b->roof, width_m);
     if (b->roof == ROOF_FLAT) rise_m = 0;
     double     eaves_m = eaves_of(use, area_m2);
-    HeightFrom from = HEIGHT_USE;
+    HeightFrom from = HEIGHT_FROM_USE;
     const CultureRule *rule = f->what[VECTOR_POLYGON];
     if (rule && rule->height_m > 0) eaves_m = rule->height_m;
-    if (!isnan(levels)) eaves_m = storey_m * levels, from = HEIGHT_LEVELS;
+    if (!isnan(levels)) eaves_m = storey_m * levels, from = HEIGHT_FROM_LEVELS;
     if (!isnan(height_m)) { /* of everything: the roof takes what its shape wants, and leaves the walls their share */
         eaves_m = fmax(height_m - rise_m, fmin(fmax(0.5 * height_m, least_m), height_m));
-        rise_m = height_m - eaves_m, from = HEIGHT_STATED;
+        rise_m = height_m - eaves_m, from = HEIGHT_FROM_FILE;
     }
     b->eaves_m = (float)eaves_m;
     b->ridge_m = fmaxf((float)(eaves_m + rise_m), b->eaves_m);

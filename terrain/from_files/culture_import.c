@@ -1,6 +1,6 @@
 /* terrain/from_files/culture_import.c: from features of files to records: places, outlines and lines in ENU, base
  * heights, and what is left out. */
-#include "terrain/from_files/culture_private.h"
+#include "terrain/from_files/culture_import_private.h"
 
 #include <stdlib.h>
 

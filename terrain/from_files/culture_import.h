@@ -31,13 +31,16 @@ typedef enum CultureLeft {
     CULTURE_LEFTS
 } CultureLeft;
 
+/* Where a building's height is from. */
+typedef enum HeightFrom { HEIGHT_FROM_FILE, HEIGHT_FROM_LEVELS, HEIGHT_FROM_USE, HEIGHTS_FROM } HeightFrom;
+
 typedef struct CultureReport {
     int64_t features; /* read */
     int     left[CULTURE_LEFTS];
     int     courtyards;         /* inner rings, which are built over */
     int     mended;             /* numbers that could not be true and were left aside: a height of 9999 m */
     int     unread;             /* numbers that are none: `tall` */
-    int     height_from[3];     /* buildings whose height the files state, by levels, by use and size */
+    int     height_from[HEIGHTS_FROM]; /* buildings whose height the files state, by levels, by use and size */
     double  low_m, high_m;      /* ridges of buildings; low_m > high_m: none */
     int     trees_marked;
 } CultureReport;

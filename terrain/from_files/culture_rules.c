@@ -1,5 +1,5 @@
 /* terrain/from_files/culture_rules.c: etc/culture_tags.csv: what attributes mean, and what those of a feature say. */
-#include "terrain/from_files/culture_private.h"
+#include "terrain/from_files/culture_import_private.h"
 #include "pitviper_table.h"
 
 #include <stdlib.h>
@@ -32,6 +32,8 @@ const char *culture_roof_name(int roof) { return name_of(NAMES(roof_names), roof
 const char *culture_fabric_name(int fabric) { return name_of(NAMES(fabric_names), fabric); }
 const char *culture_line_name(int kind) { return name_of(NAMES(line_names), kind); }
 const char *culture_point_name(int kind) { return name_of(NAMES(point_names), kind); }
+
+enum { name_most = 256 };
 
 static int find_name(const char *const *names, size_t count, const char *name)
 {
@@ -99,10 +101,16 @@ static int kind_of(const CultureRule *r)
     return kind < 0 ? -2 : kind;
 }
 
-static void to_lower(char *text)
+/* Letters as names of attributes are compared by: case aside, and `_` for `:`, which Shapefiles cannot have. */
+static char letter_of(char c) { return c >= 'A' && c <= 'Z' ? (char)(c + 'a' - 'A') : c == ':' ? '_' : c; }
+
+static int compare_names(const char *a, const char *b, size_t most)
 {
-    for (; *text; text++)
-        if (*text >= 'A' && *text <= 'Z') *text = (char)(*text + 'a' - 'A');
+    for (size_t k = 0; k < most; k++) {
+        const unsigned char x = (unsigned char)letter_of(a[k]), y = (unsigned char)letter_of(b[k]);
+        if (x != y || !x) return x - y;
+    }
+    return 0;
 }
 
 static Status take(void *user, const void *row, const TableRows *rows, int number)
@@ -117,7 +125,6 @@ static Status take(void *user, const void *row, const TableRows *rows, int numbe
         return table_rows_refuse(rows, number, "width_m", "a width");
     if (rule->makes == MAKES_POINT && !(rule->height_m > 0))
         return table_rows_refuse(rows, number, "height_m", "a height");
-    to_lower(rule->key), to_lower(rule->value);
     rules->count++;
     return STATUS_OK;
 }
@@ -127,7 +134,7 @@ static void sort(CultureRules *rules)
 {
     for (int n = 0; n < rules->count; n++) {
         int at = 0, order = 1;
-        while (at < rules->keys && (order = strcmp(rules->rule[n].key, rules->rule[rules->key[at]].key)) > 0) at++;
+        while (at < rules->keys && (order = compare_names(rules->rule[n].key, rules->rule[rules->key[at]].key, name_most)) > 0) at++;
         if (at < rules->keys && order == 0) {
             int last = rules->key[at];
             while (rules->rule[last].next >= 0) last = rules->rule[last].next;
@@ -173,26 +180,29 @@ static int find_key(const CultureRules *rules, const char *name)
     enum { cut = 10 };
     int low = 0, high = rules->keys - 1;
     while (low <= high) {
-        const int middle = (low + high) / 2, order = strcasecmp(name, rules->rule[rules->key[middle]].key);
+        const int middle = (low + high) / 2, order = compare_names(name, rules->rule[rules->key[middle]].key, name_most);
         if (order == 0) return rules->key[middle];
         if (order < 0) high = middle - 1;
         else low = middle + 1;
     }
     if (strlen(name) != cut) return -1;
     for (int n = 0; n < rules->keys; n++)
-        if (strncasecmp(name, rules->rule[rules->key[n]].key, cut) == 0) return rules->key[n];
+        if (compare_names(name, rules->rule[rules->key[n]].key, cut) == 0) return rules->key[n];
     return -1;
 }
 
 static bool is_no(const char *value)
 {
-    static const char *const no[] = {"no", "none", "0", "f", "false", "F"};
-    return !*value || find_name(NAMES(no), value) >= 0 || strcasecmp(value, "false") == 0 || strcasecmp(value, "no") == 0;
+    static const char *const no[] = {"", "no", "none", "0", "f", "false"};
+    for (size_t k = 0; k < sizeof no / sizeof *no; k++)
+        if (strcasecmp(value, no[k]) == 0) return true;
+    return false;
 }
 
+/* A number of 0 is one that a file does not know, but for a direction. */
 static bool fits(const CultureRule *rule, const char *value)
 {
-    if (strcmp(rule->value, "*") == 0) return !is_no(value);
+    if (strcmp(rule->value, "*") == 0) return rule->makes == MAKES_DIRECTION || !is_no(value);
     return strcasecmp(rule->value, value) == 0;
 }
 

@@ -1,6 +1,6 @@
 /* terrain/from_files/culture_texts.c: values of attributes: lengths, numbers, directions, and lists of pairs in one
  * text. */
-#include "terrain/from_files/culture_private.h"
+#include "terrain/from_files/culture_import_private.h"
 
 #include <strings.h>
 

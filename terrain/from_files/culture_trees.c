@@ -1,6 +1,6 @@
 /* terrain/from_files/culture_trees.c: a table of trees: where each stands, its kind and height, and whether its trunk
  * is painted. */
-#include "terrain/from_files/culture_private.h"
+#include "terrain/from_files/culture_import_private.h"
 #include "pitviper_table.h"
 
 PlantKind culture_plant(const char *name)
@@ -37,19 +37,17 @@ static const TableColumn in_frame[] = {{"x_m", TABLE_DOUBLE, TABLE_AT(TreeRow, x
                                        REST};
 enum { tree_columns = sizeof on_earth / sizeof *on_earth };
 static const char        next[] = "etc/reference/terrain.md, \"Trees of a table\", has an example";
-static const TableFormat formats[2] = {{"trees", on_earth, tree_columns, next, 0, culture_most_records, false},
-                                       {"trees", in_frame, tree_columns, next, 0, culture_most_records, false}};
+static const TableFormat formats[3] = {{"trees", on_earth, tree_columns, next, 0, culture_most_records, false},
+                                       {"trees", in_frame, tree_columns, next, 0, culture_most_records, false},
+                                       {"trees", on_earth + 2, tree_columns - 2, next, 0, culture_most_records, false}};
 
 Status culture_trees_read(Culture *culture, CultureReport *report, const CultureFiles *from)
 {
     TableRows rows;
-    Table     look;
-    Status    status = table_open(&look, from->trees);
+    Status    status = table_rows_open(&rows, &formats[2], from->trees);
     if (status != STATUS_OK) return status;
-    const bool local = table_column(&look, "x_m") >= 0;
-    table_close(&look);
-    status = table_rows_open(&rows, &formats[local], from->trees);
-    if (status != STATUS_OK) return status;
+    const bool local = table_rows_has(&rows, "x_m");
+    status = table_rows_use(&rows, &formats[local]);
     for (int n = 0; n < rows.table.rows && status == STATUS_OK; n++) {
         TreeRow row = {.kind = PLANT_ENGLISH_OAK};
         double  p_m[2];

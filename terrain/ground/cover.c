@@ -123,6 +123,15 @@ static unsigned coast_surfaces(int32_t surface[8], const Coast *coast, const dou
     return lanes;
 }
 
+/* What lies on the ground, such as roads, wherever there is ground. */
+static void lay_over(uint8_t *surface, const LandscapeOver *over, int count, const double *x_m, const double *y_m)
+{
+    for (int k = 0; k < count; k++) {
+        const int laid = surface[k] == SURFACE_NONE ? SURFACE_NONE : over->surface_at(over->of, x_m[k], y_m[k]);
+        if (laid != SURFACE_NONE) surface[k] = (uint8_t)laid;
+    }
+}
+
 /* nodes: those about the places; may be NULL. */
 static void find_surfaces(uint8_t *surface, const Landscape *landscape, const SlowNodes *nodes, int count,
                           const double *x_m, const double *y_m)
@@ -146,6 +155,7 @@ static void find_surfaces(uint8_t *surface, const Landscape *landscape, const Sl
         }
         for (int k = 0; k < some; k++) surface[first + k] = (uint8_t)found[k];
     }
+    if (landscape->over.of) lay_over(surface, &landscape->over, count, x_m, y_m);
 }
 
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
@@ -160,6 +170,20 @@ static bool looks_first(int side, int row, int column)
     return side < 8 ? (row + column) % 2 == 0 : row % 2 == 0 && (column + row / 2) % 2 == 0;
 }
 
+/* Whether something that lies on the ground reaches into a square of places: it may be narrower than the pattern is
+ * wide. */
+static bool something_lies(const LandscapeOver *over, int count, const double *x_m, const double *y_m)
+{
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    if (!over->of) return false;
+    for (int k = 0; k < count; k++) {
+        low[0] = fmin(low[0], x_m[k]), high[0] = fmax(high[0], x_m[k]);
+        low[1] = fmin(low[1], y_m[k]), high[1] = fmax(high[1], y_m[k]);
+    }
+    return over->surface_near(over->of, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]),
+                              0.5 * hypot(high[0] - low[0], high[1] - low[1]));
+}
+
 void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m,
                                const double *y_m)
 {
@@ -169,6 +193,7 @@ void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int
     int          place[landscape_square_most], differ = 0;
     SlowNodes    nodes = {.known = false};
     assert(side * side <= landscape_square_most);
+    differ = something_lies(&landscape->over, side * side, x_m, y_m);
     if (landscape_is_synthetic(landscape))
         invented_nodes(&nodes, &cover->invented, &landscape->elevation, side * side, x_m, y_m);
     for (int pass = 0; pass == 0 || (pass == 1 && differ); pass++) {

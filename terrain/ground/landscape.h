@@ -11,6 +11,14 @@
 
 #include "terrain/invented/invented.h"
 
+/* Surfaces that lie on whatever else there is, such as roads of culture (terrain/culture/culture_ground.h). Thread-safe
+ * functions of what is borrowed. */
+typedef struct LandscapeOver {
+    const void *of;                                                                 /* NULL: nothing lies on it */
+    int (*surface_at)(const void *of, double x_m, double y_m);                      /* SURFACE_NONE: none there */
+    bool (*surface_near)(const void *of, double x_m, double y_m, double within_m); /* whether any is so near */
+} LandscapeOver;
+
 typedef struct Landscape {
     LocalFrame      frame;
     Elevation       elevation;
@@ -20,6 +28,7 @@ typedef struct Landscape {
                           the terrain */
     LandscapeEvidence fitted_to; /* a copy of the inputs of a synthetic terrain: landscape_parts.h */
     void             *cover;     /* private; holds what surface and texture are computed from */
+    LandscapeOver     over;      /* what lies on it; .of NULL: nothing */
 } Landscape;
 
 /* The mapped file of a landscape from a terrain store (terrain/store/store.h). */
@@ -59,7 +68,7 @@ void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count,
 /* The same of side x side places, row by row, of a square as small as a pixel's, for a fraction of the time: where a
  * regular pattern of a quarter of them (half, for sides below 8) is of one class, all are; and over squares of up to
  * 12 x 4 m what the synthetic cover follows over 17 m and more is interpolated, which moves borders by some decimetres
- * (tests/terrain/test_cover.c). */
+ * (tests/terrain/test_cover.c). All places are looked at where something that lies on the ground is near. */
 enum { landscape_square_most = 256 };
 void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m,
                                const double *y_m);

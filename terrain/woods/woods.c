@@ -148,40 +148,57 @@ void woods_source_free(WoodsSource *s)
 {
     if (!s) return;
     woods_clearings_free(&s->clearings);
-    free(s->crowns.first), free(s->crowns.item);
+    free(s->crowns.first), free(s->crowns.item), free(s->trees.first), free(s->trees.item);
     if (s->has_store) store_close(&s->store);
     free(s);
 }
 
-static bool crown_square(size_t *n, const WoodsSource *s, const Crown *crown)
-{
-    const double i = floor((double)crown->x_m / woods_square_m) - (double)s->i0;
-    const double j = floor((double)crown->y_m / woods_square_m) - (double)s->j0;
-    if (!(i >= 0 && j >= 0 && i < s->nx && j < s->ny)) return false;
-    *n = (size_t)j * (size_t)s->nx + (size_t)i;
-    return true;
-}
-
-static Status sort_crowns(WoodsSource *s)
+/* Lists `count` places by squares. */
+static Status sort_places(WoodsCrowns *c, const WoodsSource *s, size_t count,
+                          void (*place)(double p_m[2], const void *of, size_t k), const void *of)
 {
     const size_t squares = (size_t)s->nx * (size_t)s->ny;
-    WoodsCrowns *c = &s->crowns;
-    size_t       n;
-    if (!s->has_store || s->store.crown_count == 0) return STATUS_OK;
     c->first = calloc(squares + 2, sizeof *c->first);
-    c->item = calloc(s->store.crown_count, sizeof *c->item);
+    c->item = calloc(count, sizeof *c->item);
     if (!c->first || !c->item) return STATUS_NO_MEMORY;
     for (int k = 0; k < 2; k++) c->low[k] = INFINITY, c->high[k] = -INFINITY;
-    for (uint64_t k = 0; k < s->store.crown_count; k++) {
-        const Crown *crown = &s->store.crown[k];
-        const double p[2] = {(double)crown->x_m, (double)crown->y_m};
-        for (int a = 0; a < 2; a++) c->low[a] = fmin(c->low[a], p[a]), c->high[a] = fmax(c->high[a], p[a]);
-        if (crown_square(&n, s, crown)) c->first[n + 2]++;
+    for (int put = 0; put < 2; put++) { /* counts at first[2 ..], then sums, then places */
+        for (size_t q = 1; put && q <= squares; q++) c->first[q + 1] += c->first[q];
+        for (size_t k = 0; k < count; k++) {
+            double p[2];
+            place(p, of, k);
+            const double i = floor(p[0] / woods_square_m) - (double)s->i0;
+            const double j = floor(p[1] / woods_square_m) - (double)s->j0;
+            for (int a = 0; a < 2; a++) c->low[a] = fmin(c->low[a], p[a]), c->high[a] = fmax(c->high[a], p[a]);
+            if (!(i >= 0 && j >= 0 && i < s->nx && j < s->ny)) continue;
+            const size_t n = (size_t)j * (size_t)s->nx + (size_t)i;
+            if (put) c->item[c->first[n + 1]++] = (uint32_t)k;
+            else c->first[n + 2]++;
+        }
     }
-    for (size_t q = 1; q <= squares; q++) c->first[q + 1] += c->first[q];
-    for (uint64_t k = 0; k < s->store.crown_count; k++)
-        if (crown_square(&n, s, &s->store.crown[k])) c->item[c->first[n + 1]++] = (uint32_t)k;
     return STATUS_OK;
+}
+
+static void crown_place(double p_m[2], const void *of, size_t k)
+{
+    const Crown *crown = of;
+    p_m[0] = (double)crown[k].x_m, p_m[1] = (double)crown[k].y_m;
+}
+
+static void tree_place(double p_m[2], const void *of, size_t k)
+{
+    const CultureTree *tree = of;
+    p_m[0] = tree[k].x_m, p_m[1] = tree[k].y_m;
+}
+
+static Status sort_trees(WoodsSource *s)
+{
+    Status status = STATUS_OK;
+    if (s->has_store && s->store.crown_count > 0)
+        status = sort_places(&s->crowns, s, s->store.crown_count, crown_place, s->store.crown);
+    if (status == STATUS_OK && s->culture && s->culture->trees > 0)
+        status = sort_places(&s->trees, s, (size_t)s->culture->trees, tree_place, s->culture->tree);
+    return status;
 }
 
 Status woods_source_open(WoodsSource **out, const Landscape *landscape, const WoodsConfig *config, double half_width_m)
@@ -212,7 +229,7 @@ Status woods_source_open(WoodsSource **out, const Landscape *landscape, const Wo
         status = store_open(&s->store, config->store);
         s->has_store = status == STATUS_OK;
     }
-    if (status == STATUS_OK) status = sort_crowns(s);
+    if (status == STATUS_OK) status = sort_trees(s);
     if (status == STATUS_OK) status = woods_clearings_create(&s->clearings, s, config);
     if (status != STATUS_OK) {
         woods_source_free(s);
@@ -277,29 +294,6 @@ static bool config_is_good(const WoodsConfig *c)
     return good;
 }
 
-/* All of it that woods_is_built_on asks about. */
-static void add_culture(CacheKey *key, const Culture *c)
-{
-    const int32_t count[] = {c->corners, c->buildings, c->lines, c->points};
-    cache_key_add(key, count, sizeof count);
-    cache_key_add(key, c->corner_m, (size_t)c->corners * sizeof *c->corner_m);
-    for (int n = 0; n < c->buildings; n++) {
-        const int32_t of[] = {c->building[n].first_corner, c->building[n].corners};
-        cache_key_add(key, of, sizeof of);
-    }
-    for (int n = 0; n < c->lines; n++) {
-        const CultureLine *l = &c->line[n];
-        const int32_t      of[] = {l->first_corner, l->corners, l->surface};
-        cache_key_add(key, of, sizeof of);
-        cache_key_add(key, &l->width_m, sizeof l->width_m);
-    }
-    for (int n = 0; n < c->points; n++) {
-        const CulturePoint *p = &c->point[n];
-        const double        of[] = {p->x_m, p->y_m, (double)p->size_m[0], (double)p->size_m[1]};
-        cache_key_add(key, of, sizeof of);
-    }
-}
-
 CacheKey woods_key(const char *what, const WoodsConfig *c)
 {
     CacheKey       key = cache_key(what);
@@ -311,7 +305,7 @@ CacheKey woods_key(const char *what, const WoodsConfig *c)
     cache_key_add(&key, c->path, (size_t)c->path_count * sizeof *c->path);
     cache_key_add(&key, c->place, (size_t)c->place_count * sizeof *c->place);
     cache_key_add(&key, c->follows, strlen(c->follows));
-    if (c->culture) add_culture(&key, c->culture);
+    culture_key_add(&key, c->culture);
     return key;
 }
 

@@ -38,7 +38,7 @@ typedef struct WoodsConfig {
     double           far_half_m; /* half width of the square about the centre of which woods_page tells more plants;
                                   * not above half_width_m: none; at most 50000 */
     /* what is built, indexed, and borrowed as long as the woods are: no standing plant within woods_built_m of it, no
-     * low one in buildings or on yards; NULL: nothing */
+     * low one in buildings or on yards, and its trees stand where they are; NULL: nothing */
     const Culture *culture;
     Cache         *cache;   /* where the standing plants and pages are kept; NULL: nowhere */
     const char    *follows; /* what the landscape and the tables follow from, as a text; NULL: not known: not kept */

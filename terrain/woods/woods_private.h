@@ -15,9 +15,9 @@ typedef struct WoodsClearings {
     uint32_t  *item;
 } WoodsClearings;
 
-/* Crowns of a terrain store, listed by squares. */
+/* Crowns of a terrain store, or trees of culture, listed by squares. */
 typedef struct WoodsCrowns {
-    uint32_t *first; /* [nx * ny + 1] by the woods' squares; NULL: no crowns */
+    uint32_t *first; /* [nx * ny + 1] by the woods' squares; NULL: there are none */
     uint32_t *item;
     double    low[2], high[2]; /* box about the crowns, in which they were looked for */
 } WoodsCrowns;
@@ -30,7 +30,7 @@ typedef struct WoodsSource {
     TerrainStore     store;
     bool             has_store, synthetic;
     WoodsClearings   clearings;
-    WoodsCrowns      crowns;
+    WoodsCrowns      crowns, trees;
     double           origin_enu[3];
     int64_t          i0, j0; /* number of the first square */
     int              nx, ny;

@@ -266,6 +266,22 @@ static void add_crowns(SquarePlants *out, const WoodsSource *s, int i, int j)
     }
 }
 
+/* Trees of culture stand where and as its files say, whatever the ground is. */
+static void add_trees(SquarePlants *out, const WoodsSource *s, int i, int j)
+{
+    static const double mean_m[PLANT_STANDING] = {20, 18, 17, 19, 20, 19, 19, 2, 1.5}; /* where no height is said */
+    const size_t        n = (size_t)j * (size_t)s->nx + (size_t)i;
+    for (uint32_t k = s->trees.first[n]; k < s->trees.first[n + 1]; k++) {
+        const CultureTree *t = &s->culture->tree[s->trees.item[k]];
+        const uint64_t     hash = woods_hash(s->seed, (int64_t)t->id, 0, 75);
+        if (t->kind >= PLANT_STANDING || woods_is_cleared(&s->clearings, t->x_m, t->y_m, 0, false)) continue;
+        const double height_m = t->height_m > 0 ? (double)t->height_m : mean_m[t->kind];
+        const double width =
+            t->kind == PLANT_HEDGE ? clamp(1.5 / (height_m * plant_crown_share(PLANT_HEDGE)), 0.6, 1.99) : 1;
+        woods_add_plant(out, s, woods_draw_plant(hash, (PlantKind)t->kind, height_m, width), t->x_m, t->y_m);
+    }
+}
+
 /* ---- candidates ------------------------------------------------------------------------------- */
 
 typedef struct Candidates {
@@ -409,6 +425,7 @@ void woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j)
     for (int k = 0; k < square_cells; k++) c.hash[k] = woods_candidate(&c.x_m[k], &c.y_m[k], s, i, j, k);
     landscape_surfaces(c.surface, s->landscape, square_cells, c.x_m, c.y_m);
     if (s->crowns.first) add_crowns(out, s, i, j);
+    if (s->trees.first) add_trees(out, s, i, j);
     for (int k = 0; k < square_cells; k++) offer(&c, out, s, k);
     woods_bears(bears, s, c.count, c.x_m, c.y_m, 0.5, false);
     for (int k = 0; k < c.count; k++) {

@@ -248,6 +248,7 @@ static const char help[] =
     "       pitviper terrain import --surface FILES -o STORE [options]\n"
     "       pitviper terrain info STORE [--out DIR] [--verify]\n"
     "       pitviper terrain again STORE\n"
+    "       pitviper terrain culture FILE... [--trees TABLE] [--store STORE | --at LAT,LON] [-o OUT.geojson]\n"
     "\n"
     "import: a terrain store, one file that is mapped (terrain.store), from any files that GDAL reads. SOURCE: terrain\n"
     "models, that is bare ground; files, or folders of them. Sheets may overlap, have different postings and coordinate\n"
@@ -425,10 +426,11 @@ static int import_command(int argc, char **argv)
 int terrain_command(int argc, char **argv)
 {
     static char called[] = "pitviper terrain", called_info[] = "pitviper terrain info",
-                called_again[] = "pitviper terrain again";
+                called_again[] = "pitviper terrain again", called_culture[] = "pitviper terrain culture";
+    const bool culture = argc > 1 && strcmp(argv[1], "culture") == 0;
     const bool again = argc > 1 && strcmp(argv[1], "again") == 0;
     const bool info = argc > 1 && strcmp(argv[1], "info") == 0; /* these have a help of their own */
-    for (int i = 1; !info && !again && i < argc && strcmp(argv[i], "--") != 0; i++)
+    for (int i = 1; !info && !again && !culture && i < argc && strcmp(argv[i], "--") != 0; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             fputs(help, stdout);
             return 0;
@@ -446,8 +448,12 @@ int terrain_command(int argc, char **argv)
         argv[1] = called_again;
         return again_command(argc - 1, argv + 1);
     }
+    if (culture) {
+        argv[1] = called_culture;
+        return terrain_culture_command(argc - 1, argv + 1);
+    }
     WordMeant meant = word_meant(argv[1]);
-    word_consider_list(&meant, "import|info|again", '|');
+    word_consider_list(&meant, "import|info|again|culture", '|');
     return command_line_wrong("terrain", "no such action: %s%s", argv[1],
-                              *word_hint(&meant) ? meant.hint : "; there are import, info and again");
+                              *word_hint(&meant) ? meant.hint : "; there are import, info, again and culture");
 }

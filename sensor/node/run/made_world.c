@@ -4,6 +4,7 @@
 #include "pitviper_channels.h"
 #include "sensor/frame/frame_world.h"
 #include "sensor/node/player/player.h"
+#include "terrain/culture/culture_ground.h"
 
 #include <malloc.h>
 #include <stdlib.h>
@@ -55,6 +56,7 @@ static void take_down(MadeWorld *m, MadeLayer layer)
         m->landscape = (Landscape){0};
         break;
     case MADE_CULTURE:
+        if (m->scenery.culture.index) culture_lay(&m->landscape, NULL);
         choice_scenery_free(&m->scenery);
         break;
     case MADE_WOODS:
@@ -300,8 +302,9 @@ static Status need_culture(MadeWorld *m, const MadeOf *of, const WoodsSquare *sq
     key.good = key.good && *m->key[MADE_GROUND];
     if (is_there(key_text, m, MADE_CULTURE, &key)) return STATUS_OK;
     const ChoiceBasis basis = {&m->survey, part, m->catalog, NULL, m->cache, NULL};
-    return done(m, MADE_CULTURE, key_text,
-                choice_scenery(&m->scenery, &m->said[MADE_CULTURE], &basis, square, &m->landscape));
+    const Status      status = choice_scenery(&m->scenery, &m->said[MADE_CULTURE], &basis, square, &m->landscape);
+    if (status == STATUS_OK && m->scenery.culture.index) culture_lay(&m->landscape, &m->scenery.culture);
+    return done(m, MADE_CULTURE, key_text, status);
 }
 
 static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *evidence, const WoodsSquare *square)

@@ -31,6 +31,7 @@ static struct {
     OGRFeatureH                  feature; /* whose parts are being sent; NULL: none */
     int                          of_file;
     int                          part;   /* the next */
+    GIntBig                      all, passed; /* features of the layer, -1: not known; those that were got of it */
     WireEnd                      end;
 } at;
 
@@ -202,6 +203,7 @@ static void limit(OGRLayerH layer, OGRSpatialReferenceH crs, const WireBox *box)
 
 static void leave_layer(void)
 {
+    if (at.all > at.passed) at.end.outside += at.all - at.passed;
     if (at.earth_from_crs) OCTDestroyCoordinateTransformation(at.earth_from_crs);
     at.earth_from_crs = NULL;
     at.from = NULL;
@@ -217,10 +219,8 @@ static bool next_layer(const WireBox *box, const char *key)
             if (!layer || (OGR_L_GetFeatureCount(layer, 0) == 0 && !OGR_L_GetSpatialRef(layer))) continue;
             at.earth_from_crs = to_earth(f, layer, key);
             if (!at.earth_from_crs) continue;
-            const GIntBig all = OGR_L_GetFeatureCount(layer, 0);
+            at.all = OGR_L_GetFeatureCount(layer, 0), at.passed = 0;
             limit(layer, f->crs ? f->crs : OGR_L_GetSpatialRef(layer), box);
-            const GIntBig some = OGR_L_GetFeatureCount(layer, 0);
-            if (all > 0 && some >= 0 && some < all) at.end.outside += all - some;
             OGR_L_ResetReading(layer);
             at.from = layer, at.of_file = at.file;
             return true;
@@ -380,7 +380,7 @@ Status reader_features(uint8_t *data, int32_t *count, const WireBox *box, const 
         put_feature(&b);
         if (b.full) break;
         if (!b.found) at.end.shapeless++;
-        at.end.features++;
+        at.end.features++, at.passed++;
         OGR_F_Destroy(at.feature);
         at.feature = NULL;
     }

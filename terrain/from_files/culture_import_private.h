@@ -1,7 +1,7 @@
-/* terrain/from_files/culture_private.h: from attributes and places of files to records of culture: what its parts
+/* terrain/from_files/culture_import_private.h: from attributes and places of files to records of culture: what its parts
  * share. */
-#ifndef TERRAIN_FROM_FILES_CULTURE_PRIVATE_H
-#define TERRAIN_FROM_FILES_CULTURE_PRIVATE_H
+#ifndef TERRAIN_FROM_FILES_CULTURE_IMPORT_PRIVATE_H
+#define TERRAIN_FROM_FILES_CULTURE_IMPORT_PRIVATE_H
 
 #include "terrain/elevation/vector.h"
 #include "terrain/from_files/culture_import.h"
@@ -56,7 +56,7 @@ typedef enum RuleMakes {
 } RuleMakes;
 
 typedef struct CultureRule {
-    char      key[32], value[48]; /* lower case */
+    char      key[32], value[48];
     int       makes;              /* RuleMakes */
     char      kind_name[24];
     int       kind; /* by makes: BuildingUse, CultureLineKind ..., an index of the words there; -1: empty */
@@ -100,9 +100,6 @@ static inline uint64_t culture_mix(uint64_t seed, const void *octets, size_t cou
 static const uint64_t culture_mix_seed = 0xcbf29ce484222325u;
 
 /* ---- culture_building.c ---- */
-
-/* Where a building's heights are from. */
-typedef enum HeightFrom { HEIGHT_STATED, HEIGHT_LEVELS, HEIGHT_USE } HeightFrom;
 
 /* All of a building but its outline, place and id, from its facts and its outline in ENU. mended: how many numbers
  * could not be a building's and were left aside. */
