@@ -229,6 +229,11 @@ static void stand_there(ShadowStand *out, const void *canopy, double x_m, double
     *out = (ShadowStand){(float)c.hides, (float)c.base_m, (float)c.top_m, (float)c.open};
 }
 
+static void raise_scenery(float *z_m, const ShadowGrid *g, const void *tracer)
+{
+    scenery_tracer_tops(z_m, tracer, g->nx, g->ny, g->x0_m, g->y0_m, g->cell_m);
+}
+
 static Status cast_shadows(World *world, double shadow_m, Pool *pool)
 {
     float     d_enu[3][heat_day_slots];
@@ -244,7 +249,9 @@ static Status cast_shadows(World *world, double shadow_m, Pool *pool)
                          .clumped = world->canopy ? clumped : NULL,
                          .plants = world->canopy ? stand_there : NULL,
                          .user = world->canopy,
-                         .cache = world->cache};
+                         .cache = world->cache,
+                         .raise = world->scenery ? raise_scenery : NULL,
+                         .raise_user = world->scenery};
     return heat_shadow_create(&world->shadow, &of, pool);
 }
 
