@@ -212,10 +212,15 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
 {
     const Picture *p = job->picture;
     const size_t   a = pixel_index(job, xa, ya), b = pixel_index(job, xb, yb);
-    const bool     part = p->entity[a] || p->entity[b], plants = p->instance && (p->instance[a] || p->instance[b]);
+    const bool     part = p->part[a] || p->part[b], plants = !part && p->instance && (p->instance[a] || p->instance[b]);
+    const bool     entity = p->entity[a] || p->entity[b];
+    const unsigned edge = entity ? refine_all
+                          : part ? refine_scenery
+                                 : refine_step; /* scenery is what targets stand before */
     const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
     if (sky_a && sky_b) return 0;
-    if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return refine_all;
+    if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return edge;
+    if (part && p->instance && p->instance[a] != p->instance[b]) return edge;
     if (sky_a != sky_b) return refine_step;
     if (plants) return leaves ? refine_plants : 0; /* most neighbours differ in light or kind */
     const bool   other = p->material[a] != p->material[b];
@@ -227,9 +232,8 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
                              : kinds ? near_m / job->request->view.focal_px
                                      : step_ground * near_m;
     const PixelPair pair = {a, b, xa, ya, xb, yb};
-    if (!(cosine > sharp_cosine) || steps_in_depth(job, &pair, step_m, kinds ? kinds_bent : 0, kinds))
-        return part ? refine_all : refine_step;
-    if (part && other) return refine_all;
+    if (!(cosine > sharp_cosine) || steps_in_depth(job, &pair, step_m, kinds ? kinds_bent : 0, kinds)) return edge;
+    if (part && other) return edge;
     return (other ? refine_ground : 0) | (job->sun[a] != job->sun[b] ? refine_sun : 0);
 }
 
@@ -257,8 +261,8 @@ static void find_pairs(uint32_t *restrict pair, const Job *job, size_t a, size_t
         const uint32_t plain = (uint32_t)((other | else_other) == 0) & (uint32_t)(turn > cosine) &
                                (uint32_t)(far_m - near_m <= step * near_m);
         const uint32_t sky = (uint32_t) !(near_m < INFINITY);
-        const uint32_t leaves =
-            plants & (uint32_t)(other == 0) & (uint32_t)(far_m < INFINITY) & (uint32_t)((plant[k] | plant[l]) != 0);
+        const uint32_t leaves = plants & (uint32_t)(other == 0) & (uint32_t)(far_m < INFINITY) &
+                                (uint32_t)((plant[k] | plant[l]) != 0) & (uint32_t)(part[k] == 0);
         pair[i] = plain | sky ? pair_alike : leaves ? pair_of_plants : pair_may_differ;
     }
 }
@@ -328,7 +332,7 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, const Tile *tile
             const bool       smoothed = leafy && !(flag & refine_leaves);
             if (smoothed) flag &= ~(unsigned)(refine_sun | refine_ground);
             if (job->request->samples > 1)
-                flag &= ~(unsigned)(refine_step | refine_plants | refine_ground); /* all flags set */
+                flag &= ~(unsigned)(refine_step | refine_scenery | refine_plants | refine_ground); /* all flags set */
             ask[at] = grounds && !(flag & refine_all) && !smoothed &&
                       job->picture->cover[pixel_index(job, x, y)] != SURFACE_NONE;
             any |= ask[at];

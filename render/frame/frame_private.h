@@ -57,7 +57,7 @@ void pixels_box(double box_px[4], const PixelBlock *block);
 
 /* Areas in steps of 1 / SumRules.steps_per_px of a pixel, powers in steps of the rules' quanta. */
 typedef struct TargetCount {
-    int64_t visible, amodal, hidden_ground, hidden_entity, hidden_plants;
+    int64_t visible, amodal, hidden_ground, hidden_entity, hidden_plants, hidden_scenery;
     int64_t radiance[picture_plane_count];
     int64_t veiled[BAND_COUNT]; /* area times the share of its light that smoke absorbs */
     int     box[4], amodal_box[4];
@@ -262,12 +262,13 @@ void sampling_fill_tile(void *job, int worker, int task);
 /* Refinement that a pixel needs. What only the shadow-sensitive bands need must not affect the others, whose bits
  * would then depend on the requested bands; and bare ground must stay cheap. */
 typedef enum RefineFlag {
-    refine_all = 1,     /* edge_samples a side, every band */
-    refine_step = 2,    /* 2 a side, each split by ground class; every band: a crest of the ground, the horizon */
-    refine_sun = 4,     /* edge_samples a side, optical and MWIR: the edge of a shadow */
-    refine_ground = 8,  /* the plane of the existing hit, split by ground class, no ray; not the radar */
-    refine_plants = 16, /* leaf_samples a side, which join the first one; every band: plants about a target */
-    refine_leaves = 32, /* a mark: plants are refined here */
+    refine_all = 1,      /* edge_samples a side, every band */
+    refine_step = 2,     /* 2 a side, each split by ground class; every band: a crest of the ground, the horizon */
+    refine_sun = 4,      /* edge_samples a side, optical and MWIR: the edge of a shadow */
+    refine_ground = 8,   /* the plane of the existing hit, split by ground class, no ray; not the radar */
+    refine_plants = 16,  /* leaf_samples a side, which join the first one; every band: plants about a target */
+    refine_leaves = 32,  /* a mark: plants are refined here */
+    refine_scenery = 64, /* 2 a side, which join the first one; every band: borders of scenery */
 } RefineFlag;
 
 /* Marks what is always refined: bounding boxes of medium-sized targets, and the ground where a target's shadow
@@ -390,7 +391,7 @@ struct TargetGrid {
         *before;            /* the same of what hides the target, a pixel that shows some of it */
     TargetGridTruth *truth; /* [pixels]; NULL: not needed */
     /* over the target, px within the image */
-    double visible, amodal, hidden_ground, hidden_entity, hidden_plants;
+    double visible, amodal, hidden_ground, hidden_entity, hidden_plants, hidden_scenery;
     double veiled[BAND_COUNT];          /* area x the share that smoke absorbs */
     double square[picture_plane_count]; /* area x radiance^2 */
     float *cell[picture_plane_count];   /* radiance of each; NULL: neither needed for the budget nor for a detector */

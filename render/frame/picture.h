@@ -101,9 +101,10 @@ typedef struct TargetPixels {
     int    box[4], amodal_box[4]; /* first column, first row, last column + 1, last row + 1; empty: all 0 */
     bool   projected;             /* in front of the eye and its bounding sphere meets the image */
     double projected_box[4];      /* of all of it, px, not clipped to the image; where `projected` */
-    double occluded_ground;       /* pixels hidden by the ground, and by other entities */
+    double occluded_ground;       /* pixels hidden by the ground, by other entities ... */
     double occluded_entity;
     double occluded_plants;
+    double occluded_scenery;
     double veiled[BAND_COUNT]; /* share of its light that smoke and dust take, mean over what is visible, 0 .. 1 */
     int    occluder;           /* snapshot index of the entity that hides most; -1 */
 } TargetPixels;
@@ -159,9 +160,10 @@ typedef struct Picture {
     double   *profile;          /* [profile_bins][radar_bounces], relative power */
     float    *range_m;          /* +inf: sky */
     uint32_t *entity;           /* snapshot index + 1; 0: none */
-    uint32_t *part, *material;  /* + 1; 0: none */
-    uint32_t *instance;         /* plant: 1 + ForestHit.plant; low plants: forest_low_bit and a number; 0:
-                                 * none. NULL where the world has no plants */
+    uint32_t *part, *material;  /* + 1; 0: none. part: of entities and scenery */
+    uint32_t *instance;         /* plant: 1 + ForestHit.plant; low plants: forest_low_bit and a number; scenery, where
+                                 * there is a part and no entity: 1 + its number of Scenery.object; 0: none. NULL where
+                                 * the world has neither */
     uint8_t       *cover;       /* SurfaceClass of the ground that is seen, 0: none is */
     float         *temp_k;      /* NaN: sky */
     float         *normal[3];   /* ENU of the terrain origin */
@@ -205,10 +207,10 @@ static inline size_t picture_index(const Picture *picture, int x, int y)
     return (size_t)y * (size_t)picture->width + (size_t)x;
 }
 
-/* Whether a pixel shows a plant. */
+/* Whether a pixel shows a plant: entities and scenery have parts. */
 static inline bool picture_shows_plant(const Picture *picture, size_t px)
 {
-    return picture->instance && picture->instance[px] && !picture->entity[px];
+    return picture->instance && picture->instance[px] && !picture->part[px];
 }
 
 /* Mean squared difference of a pixel to its neighbours, left, right, above and below. */

@@ -123,7 +123,8 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
         memcpy(request->record->channel, job->channel, sizeof job->channel);
     }
 
-    Status status = planes_create(job->picture, request, scene->snapshot->count, world->forest != NULL, arena);
+    Status status =
+        planes_create(job->picture, request, scene->snapshot->count, world->forest || world->scenery, arena);
     if (status == STATUS_OK && job->picture->optical[1]) optical_white(job->picture->white_w_m2_sr, scene->air);
     if (status == STATUS_OK)
         status = shade_scene_create(scene, request, render_air_bands(request->bands, request->optical), pool, arena);

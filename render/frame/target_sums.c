@@ -228,6 +228,8 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const SharedBloc
             if (s->hits.entity[i]) {
                 count->hidden_entity += whole;
                 occlusion_add(&sums->hidden, rules->arena, index, (int)s->hits.entity[i] - 1, whole, 0);
+            } else if (s->hits.kind[i] == hit_scenery) {
+                count->hidden_scenery += whole;
             } else if (s->hits.instance[i]) {
                 count->hidden_plants += whole;
             } else {
@@ -294,6 +296,7 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
         sum.hidden_ground += t->hidden_ground;
         sum.hidden_entity += t->hidden_entity;
         sum.hidden_plants += t->hidden_plants;
+        sum.hidden_scenery += t->hidden_scenery;
         for (int k = 0; k < picture_plane_count; k++) sum.radiance[k] += t->radiance[k];
         for (int b = 0; b < BAND_COUNT; b++) sum.veiled[b] += t->veiled[b];
         merge_box(sum.box, t->box);
@@ -305,6 +308,7 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
     target->occluded_ground = (double)sum.hidden_ground * share;
     target->occluded_entity = (double)sum.hidden_entity * share;
     target->occluded_plants = (double)sum.hidden_plants * share;
+    target->occluded_scenery = (double)sum.hidden_scenery * share;
     target->occluder = -1;
     for (int k = 0; k < picture_plane_count; k++)
         target->radiance[k] = (double)sum.radiance[k] * rules->radiance_quantum;

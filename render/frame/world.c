@@ -115,6 +115,30 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
     return far_woods_create(&world->far_woods, woods, world->forest, &world->materials, config->leaves, &kept, pool);
 }
 
+Status world_scenery(World *world, const Scenery *scenery, const char *isa, Pool *pool)
+{
+    char           path[512];
+    SceneryTracer *tracer;
+    if (!etc_path(path, sizeof path, "materials.csv")) return STATUS_BAD_VALUE;
+    if (scenery->objects == 0) return STATUS_OK;
+    Status status = scenery_tracer_create(&tracer, scenery, isa, pool);
+    if (status != STATUS_OK) return status;
+    status = scenery_tracer_materials(tracer, &world->materials, path);
+    if (status == STATUS_OK) world->scenery = tracer;
+    else scenery_tracer_destroy(tracer);
+    return status;
+}
+
+Status world_scenery_join(Visibility *v, const World *world, double t_s, const VisibilityConfig *of, Arena *arena)
+{
+    SceneryFrame  *frame;
+    SceneryFrameOf at = {.t_s = t_s, .skips_off = of->skips_off, .bend_per_m = of->bend_per_m};
+    if (!world->scenery) return STATUS_OK;
+    memcpy(at.eye_enu, of->eye_enu, sizeof at.eye_enu);
+    const Status status = scenery_frame_create(&frame, world->scenery, &at, arena);
+    return status == STATUS_OK ? scenery_frame_join(v, frame) : status;
+}
+
 void world_cool(World *world)
 {
     heat_shadow_destroy(world->shadow);
@@ -127,6 +151,7 @@ void world_cool(World *world)
 void world_close(World *world)
 {
     world_cool(world);
+    scenery_tracer_destroy(world->scenery);
     forest_destroy(world->forest);
     canopy_destroy(world->canopy);
     far_woods_destroy(world->far_woods);
@@ -281,7 +306,7 @@ Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *mar
     if (status != STATUS_OK) return status;
     *out = arena_alloc(arena, 1, sizeof **out);
     if (!*out) return STATUS_NO_MEMORY;
-    **out = (HeatScene){now, world->shadow, mark_heat};
+    **out = (HeatScene){.now = now, .shadow = world->shadow, .marks = mark_heat};
     return STATUS_OK;
 }
 

@@ -236,10 +236,13 @@ bool heat_marks_at(MarkedGround *out, const MarkHeat *marks, int kind, const dou
 
 /* ---- the ground in one frame ----------------------------------------------------------------- */
 
+typedef struct SceneryTemps SceneryTemps; /* render/heat/scenery_heat.h */
+
 typedef struct HeatScene {
-    const HeatNow   *now;
-    const ShadowMap *shadow; /* NULL: nothing shaded it */
-    const MarkHeat  *marks;  /* NULL: none */
+    const HeatNow      *now;
+    const ShadowMap    *shadow;  /* NULL: nothing shaded it */
+    const MarkHeat     *marks;   /* NULL: none */
+    const SceneryTemps *scenery; /* NULL: scenery is as warm as the air */
 } HeatScene;
 
 /* Places of the ground side by side: class, place, normal, and absorptance over that of the kind. */

@@ -8,6 +8,7 @@
 
 #include "render/light/thermal.h"
 #include "render/heat/heat.h"
+#include "render/trace/scenery/scenery_tracer.h"
 #include "pitviper_simd.h"
 #include "pitviper.h"
 #include "terrain/weather/weather.h"
@@ -190,6 +191,8 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
                 leaves_add(&leaves, i, m, here_k, open, sun ? (double)sun[i] : open);
             } else if (hits->kind[i] == hit_plant) {
                 temp_k[i] = (float)wood_k(air, material[i], here_k, hits, i);
+            } else if (hits->kind[i] == hit_scenery) {
+                temp_k[i] = (float)here_k;
             } else if (hits->entity[i]) {
                 temp_k[i] = (float)part_k(parts, here_k, hits, i);
             } else if (!air->heat || hits->surface[i] == SURFACE_NONE) {

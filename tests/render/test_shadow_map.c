@@ -253,7 +253,7 @@ static void places_side_by_side(void **state)
     for (int k = 0; k < 9; k++) now.table.sun_k[kind][k] = 307;
     for (int k = 0; k < heat_ups; k++) now.table.shade_k[kind][k] = 291, now.table.dark_k[kind][k] = 284;
     CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, slots, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_OK);
-    const HeatScene scene = {&now, map, NULL};
+    const HeatScene scene = {.now = &now, .shadow = map};
     for (int first = 0; first < 60; first += heat_lanes) {
         GroundPlaces at = {.surface = {kind, kind, kind, kind}};
         HeatPlaces   one_by_one;

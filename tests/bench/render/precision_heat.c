@@ -272,7 +272,7 @@ static void compare_shade(BenchSetting *point, const ShadeSet *a, const ShadeSet
                           double half_m)
 {
     enum { places = 20000 };
-    const HeatScene scene[2] = {{now, a->map, NULL}, {now, fine->map, NULL}};
+    const HeatScene scene[2] = {{.now = now, .shadow = a->map}, {.now = now, .shadow = fine->map}};
     double          sum = 0;
     for (int i = 0; i < places; i++) {
         const double p_enu[3] = {half_m * (2 * random_uniform(23, 0, 0, (uint64_t)i) - 1),

@@ -126,7 +126,7 @@ static void ask_ground(void *user)
 static void fill_hits(HitSet *s, const HeatNow *now, const ShadowMap *shadow, const Landscape *landscape,
                       const double half_m[2])
 {
-    s->scene = (HeatScene){now, shadow, NULL};
+    s->scene = (HeatScene){.now = now, .shadow = shadow};
     for (int i = 0; i < heat_hits; i++) { /* neighbours, as pixels of a row are */
         const double at_x = random_uniform(31, 0, 0, (uint64_t)(i / 64)),
                      at_y = random_uniform(31, 1, 0, (uint64_t)(i / 64));
