@@ -310,6 +310,18 @@ const Probe render_probes[] = {
      .open = heat_probe_open,
      .row = heat_probe_row,
      .close = heat_probe_close},
+    {.name = "heat-wall",
+     .arguments = PROBE_WEATHER_ARGUMENTS,
+     .help =
+         "temperature of a wall or roof in the open, warmed up over the two days before each local day, and what it "
+         "takes and gives; construction: of etc/constructions.csv; material: of etc/materials.csv; tilt: of its outer "
+         "face, 0 a flat roof, 90 a wall (90); aspect: where it faces, clockwise from north (0); shade: share of the "
+         "direct sun taken, all day (0); behind: of its room; ground: about it; weather as of `weather`",
+     .in = "unix_s,construction$,material$,tilt_deg?,aspect_deg?,shade?",
+     .out = "temp_k,behind_k,air_temp_k,ground_k,absorbed_w_m2,direct_w_m2,diffuse_w_m2,longwave_w_m2,film_w_m2k",
+     .open = wall_probe_open,
+     .row = wall_probe_row,
+     .close = wall_probe_close},
     {.name = "heat-node",
      .arguments = PROBE_WEATHER_ARGUMENTS,
      .help =

@@ -8,6 +8,10 @@ Status      heat_probe_open(void **state, int argc, char **argv);
 const char *heat_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
 void        heat_probe_close(void *state);
 
+Status      wall_probe_open(void **state, int argc, char **argv);
+const char *wall_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+void        wall_probe_close(void *state);
+
 Status      heat_node_probe_open(void **state, int argc, char **argv);
 const char *heat_node_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
 void        heat_node_probe_close(void *state);

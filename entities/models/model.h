@@ -34,6 +34,9 @@ typedef enum HeatRole {
     HEAT_WINDOW,      /* life: its panes */
     HEAT_FLUE,        /* life: chimney */
     HEAT_FLARE,       /* pyrotechnic: burning since it appeared */
+    HEAT_FIRE,        /* burning: flames of an open fire */
+    HEAT_EMBER,       /* burning: its glowing bed, a barrel's mouth */
+    HEAT_SMOULDER,    /* burning: the crust of a heap that smoulders inside */
     HEAT_WRECK,       /* burning: all of a destroyed or flaming platform, on top of the others; no part has it */
     HEAT_ROLE_COUNT
 } HeatRole;

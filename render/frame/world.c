@@ -141,11 +141,13 @@ Status world_scenery_join(Visibility *v, const World *world, double t_s, const V
 
 void world_cool(World *world)
 {
+    scenery_heat_destroy(world->scenery_heat);
     heat_shadow_destroy(world->shadow);
     heat_destroy(world->heat);
     free(world->drive);
     weather_course_close(world->course);
     world->shadow = NULL, world->heat = NULL, world->drive = NULL, world->course = NULL;
+    world->scenery_heat = NULL;
 }
 
 void world_close(World *world)
@@ -335,7 +337,7 @@ struct WorldVehicles {
     } kept[weather_kept]; /* by time */
 };
 
-static double wind_share_of_low_things(void)
+double world_low_wind(void)
 {
     static const double height_m = 1.5, anemometer_m = 10, rough_m = 0.03; /* grass: logarithmic profile */
     return log(height_m / rough_m) / log(anemometer_m / rough_m);
@@ -351,7 +353,7 @@ static const GroundWeather *weather_then(double wind_enu_mps[3], WorldVehicles *
     if (v->kept[at].unix_s != unix_s) {
         Weather w;
         weather_at(&w, v->world->course, unix_s);
-        const double wind_mps = w.wind_mps * wind_share_of_low_things();
+        const double wind_mps = w.wind_mps * world_low_wind();
         world_heat_weather(&v->kept[at].weather, unix_s, v->world->drive);
         v->kept[at].wind_enu_mps[0] = -wind_mps * sin(w.wind_from_rad);
         v->kept[at].wind_enu_mps[1] = -wind_mps * cos(w.wind_from_rad);

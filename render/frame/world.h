@@ -6,6 +6,7 @@
 #include "render/trace/plants/forest.h"
 #include "render/heat/heat.h"
 #include "render/heat/part_table.h"
+#include "render/heat/scenery_heat.h"
 #include "render/heat/vehicle_heat.h"
 #include "render/light/canopy.h"
 #include "render/light/far_woods.h"
@@ -35,6 +36,7 @@ typedef struct World {
     Heat             *heat;
     ShadowMap        *shadow;  /* NULL with heat: nothing shaded the ground */
     struct HeatDrive *drive;   /* of heat */
+    SceneryHeat      *scenery_heat; /* NULL: world_warm_scenery was not called */
     PartTable         parts;   /* what is behind the skin of parts */
     PatchSet         *patches; /* of the models that have been seen with temperatures */
     Cache            *cache;   /* world_keep; NULL: nowhere */
@@ -60,6 +62,11 @@ Status world_scenery_join(Visibility *v, const World *world, double t_s, const V
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool);
 /* Undoes it: before another atmosphere, which its heat points to. */
 void world_cool(World *world);
+/* Warms scenery, which must outlive the world, by the weather that warms the ground; config: as world_warm's but for
+ * facets, which are its own. After world_warm; world_cool undoes it. */
+Status world_warm_scenery(World *world, const Scenery *scenery, const HeatConfig *config, const char *isa, Pool *pool);
+/* Its temperatures at a time, in the arena; *out NULL where there are none. */
+Status world_scenery_temps(SceneryTemps **out, const World *world, double unix_s, Arena *arena);
 /* The same as world_warm for a clear day of the atmosphere's own temperature: what benches and pictures of models stand
  * on. */
 Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m, Pool *pool);
@@ -87,6 +94,8 @@ typedef struct HeatDrive {
     double               exercise_s; /* Unix time of exercise time 0 */
 } HeatDrive;
 
+/* Of the wind at 10 m, the share of low things' at 1.5 m over grass. */
+double world_low_wind(void);
 /* HeatWeather; user: a HeatDrive. Thermometer at 2 m, anemometer at 10 m. Beyond 1900 .. 2100 there is no sun. */
 void world_heat_weather(GroundWeather *out, double unix_s, const void *drive);
 

@@ -12,7 +12,7 @@ HeatConfig heat_default_config(void)
 
 /* ---- columns ----------------------------------------------------------------------------------- */
 
-static void facet_normal(double n_enu[3], int u, int v, int facets)
+void heat_facet_normal(double n_enu[3], int u, int v, int facets)
 {
     const double a = 2.0 * u / (facets - 1) - 1, b = 2.0 * v / (facets - 1) - 1;
     const double x = 0.5 * (a + b), y = 0.5 * (a - b);
@@ -27,7 +27,7 @@ static GroundExposure exposure_of(const Heat *h, int c, double level_k)
     const int      facets = h->config.facets, all = facets * facets;
     GroundExposure e = {.sun = 1, .sky = 1, .around_k = level_k};
     if (c < all) {
-        facet_normal(e.n_enu, c % facets, c / facets, facets);
+        heat_facet_normal(e.n_enu, c % facets, c / facets, facets);
     } else if (c < all + 2 * heat_ups) {
         const double up = up_of((c - all) % heat_ups);
         e.n_enu[0] = sqrt(1 - up * up), e.n_enu[2] = up, e.sun = 0;
@@ -107,9 +107,9 @@ static void remember(Heat *h, int steps)
 
 static void advance(Heat *h, int steps)
 {
-    const GroundWeather after = *heat_weather_of(h, h->index + steps);
+    const GroundWeather after = *heat_course_at(&h->course, h->index + steps);
     h->weather[0] = h->weather[1];
-    heat_run(h, ground_kinds, step_kind, &(StepJob){h, steps * h->config.step_s, &h->weather[0], &after});
+    heat_run(h->config.pool, ground_kinds, step_kind, &(StepJob){h, steps * h->config.step_s, &h->weather[0], &after});
     step_branches(h, &after, steps * h->config.step_s);
     h->index += steps;
     h->weather[1] = after;
@@ -120,7 +120,7 @@ static void fill_past(Heat *h, HeatPast *out)
 {
     Interval  interval[heat_past];
     const int count = heat_past_begin(h, out, interval);
-    heat_run(h, ground_kinds, heat_past_respond, &(PastJob){h, interval, count, out});
+    heat_run(h->config.pool, ground_kinds, heat_past_respond, &(PastJob){h, interval, count, out});
 }
 
 /* ---- tables ------------------------------------------------------------------------------------ */
@@ -201,22 +201,6 @@ static void next_table(Heat *h)
 
 /* ---- life -------------------------------------------------------------------------------------- */
 
-/* The day's half hours with the sun up. */
-static void find_slots(Heat *h)
-{
-    const double day = floor(h->config.unix_s / day_s) * day_s;
-    for (int s = 0; s < heat_day_slots; s++) {
-        double at_s = day + (s + 0.5) * slot_s;
-        if (at_s > h->config.unix_s) at_s -= day_s; /* of the day past */
-        GroundWeather w;
-        h->config.weather(&w, at_s, h->config.user);
-        h->slot_of[s] = -1;
-        if (!(w.sun_d_enu[2] > 0)) continue;
-        for (int k = 0; k < 3; k++) h->slot_d_enu[k][h->slots] = (float)w.sun_d_enu[k];
-        h->slot_of[s] = h->slots++;
-    }
-}
-
 static void start_branches(Heat *h, double temp_k)
 {
     for (int k = 0; k < h->branches; k++)
@@ -229,7 +213,7 @@ static void start_branches(Heat *h, double temp_k)
 static void start_columns(Heat *h)
 {
     const int64_t        stride = h->course.wide;
-    const int            count = heat_day_strides(h);
+    const int            count = heat_day_strides(&h->config);
     const GroundWeather *w = h->course.at;
     double               air_k = 0;
     for (int i = 0; i < count; i++) air_k += w[i].air.temp_k;
@@ -278,8 +262,7 @@ static void back_to_begun(Heat *h)
     next_table(h);
 }
 
-/* Of steps of dt_s, and of those that it is halved into. */
-static void factors_of(ColumnFactors out[heat_halvings], const Column *layers, double dt_s)
+void heat_factors_of(ColumnFactors out[heat_halvings], const Column *layers, double dt_s)
 {
     for (int k = 0; k < heat_halvings; k++) {
         column_factors(&out[k], layers, ldexp(dt_s, -k));
@@ -292,7 +275,7 @@ static void warm(Heat *h)
 {
     h->index = h->first;
     start_columns(h);
-    h->weather[1] = *heat_weather_of(h, h->index);
+    h->weather[1] = *heat_course_at(&h->course, h->index);
     remember(h, 1);
     while (h->index < h->course.fine_from) advance(h, (int)h->course.wide);
     while (h->index < h->begun_index) advance(h, 1);
@@ -317,7 +300,7 @@ static bool fetch(Heat *h, CacheKey *key)
     if (!kept_fetch(heat_kept_values, h, h->config.cache, key)) return false;
     for (int k = 0; k < 2; k++) {
         h->table[k].facets = h->config.facets;
-        h->weather[k] = *heat_weather_of(h, h->begun_index + k);
+        h->weather[k] = *heat_course_at(&h->course, h->begun_index + k);
     }
     for (int k = 0; k < ground_kinds; k++) {
         h->level[0][k] = h->begun[(size_t)k * (size_t)h->columns + (size_t)level];
@@ -354,17 +337,17 @@ Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *confi
         return status;
     }
     for (int k = 0; k < ground_kinds; k++) {
-        factors_of(h->factors[0][k], &h->layers[k], config->step_s);
-        factors_of(h->factors[1][k], &h->layers[k], (double)heat_half_hour(h) * config->step_s);
+        heat_factors_of(h->factors[0][k], &h->layers[k], config->step_s);
+        heat_factors_of(h->factors[1][k], &h->layers[k], (double)heat_half_hour(&h->config) * config->step_s);
     }
     for (int s = 0; s < SURFACE_COUNT; s++) h->kind_of[s] = s == SURFACE_NONE ? SURFACE_BARE_SOIL : s;
     if (branches > 0) h->kind_of[SURFACE_FOREST_BROADLEAF] = h->kind_of[SURFACE_FOREST_CONIFER] = ground_forest_floor;
     h->branches = branches;
     for (int k = 0; k < branches; k++) h->branch_kind[k] = branch[k];
-    find_slots(h);
+    h->slots = heat_day_sun(h->slot_of, h->slot_d_enu, &h->config);
     h->begun_index = (int64_t)floor(config->unix_s / config->step_s);
     h->first = h->begun_index - (int64_t)round(steps);
-    status = heat_find_course(h);
+    status = heat_course_find(&h->course, &h->config, h->first, h->begun_index);
     if (status != STATUS_OK) {
         heat_destroy(h);
         return status;

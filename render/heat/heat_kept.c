@@ -1,6 +1,16 @@
 /* render/heat/heat_kept.c: the ground as it is at the beginning of an exercise, from the cache and into it. */
 #include "render/heat/heat_private.h"
 
+void heat_kept_ground(CacheKey *key, const GroundKind *g)
+{
+    const int32_t kind[] = {g->layers, (int32_t)g->vapour};
+    const double  soil[] = {g->porosity,    g->quartz,         g->saturation,  g->rock_w_mk,  g->rock_j_m3k,
+                            g->roughness_m, g->resistance_s_m, g->absorptance, g->emissivity, g->melts_k};
+    cache_key_add(key, kind, sizeof kind);
+    cache_key_add(key, soil, sizeof soil);
+    for (int i = 0; i < g->layers; i++) cache_key_add(key, &g->layer[i], sizeof g->layer[i]);
+}
+
 /* What it follows from: the grid, what the ground is made of, and the weather at every time that warms it. Weather
  * after the exercise's beginning is in it up to the next time of the grid. */
 CacheKey heat_kept_key(const Heat *h)
@@ -12,15 +22,7 @@ CacheKey heat_kept_key(const Heat *h)
     CacheKey          key = cache_key("warm ground");
     cache_key_add(&key, number, sizeof number);
     cache_key_add(&key, whole, sizeof whole);
-    for (int k = 0; k < ground_kinds; k++) {
-        const GroundKind *g = &h->kinds.kind[k];
-        const int32_t     kind[] = {g->layers, (int32_t)g->vapour};
-        const double      soil[] = {g->porosity,    g->quartz,         g->saturation,  g->rock_w_mk,  g->rock_j_m3k,
-                                    g->roughness_m, g->resistance_s_m, g->absorptance, g->emissivity, g->melts_k};
-        cache_key_add(&key, kind, sizeof kind);
-        cache_key_add(&key, soil, sizeof soil);
-        for (int i = 0; i < g->layers; i++) cache_key_add(&key, &g->layer[i], sizeof g->layer[i]);
-    }
+    for (int k = 0; k < ground_kinds; k++) heat_kept_ground(&key, &h->kinds.kind[k]);
     for (int k = 0; k < h->branches; k++) {
         const BranchKind *b = &h->branch_kind[k];
         const double      wood[] = {b->conductivity_w_mk, b->capacity_j_m3k, b->absorptance, b->emissivity};

@@ -6,6 +6,7 @@ typedef struct Linear {
     double falls_w_m2k;
 } Linear;
 static const double pulse_base_k = 1000; /* a linear law knows no zero; so that no temperature falls below it */
+static const double pulse_j_m2 = 1e4;
 
 static double linear_flux(double *falls, double temp_k, const void *law)
 {
@@ -17,6 +18,20 @@ static void linear_law(void *law, double share, const void *user)
 {
     (void)share;
     *(Linear *)law = *(const Linear *)user;
+}
+
+void heat_pulse_start(ColumnState *out, const Column *c)
+{
+    column_start(out, c, pulse_base_k);
+    out->temp_k[0] += pulse_j_m2 / c->capacity_j_m2k[0];
+}
+
+double heat_pulse_step(ColumnState *state, const Column *c, double falls, double dt_s)
+{
+    const ColumnBoundary b = {linear_flux, linear_law, &(Linear){falls}, 0, 1e-4 * pulse_j_m2 / c->capacity_j_m2k[0]};
+    const double         before = state->heat_j_m2;
+    column_step(state, c, NULL, &b, dt_s);
+    return (before - state->heat_j_m2) / falls / pulse_j_m2;
 }
 
 /* Intervals of the past, newest first: ten minutes for three hours, half hours to six, hours to a day and more; no less
@@ -47,9 +62,7 @@ void heat_past_respond(void *user, int worker, int kind)
     ColumnState       state;
     (void)worker;
     if (kind == SURFACE_NONE) return;
-    column_start(&state, c, pulse_base_k);
-    const double pulse_j_m2 = 1e4;
-    state.temp_k[0] += pulse_j_m2 / c->capacity_j_m2k[0];
+    heat_pulse_start(&state, c);
     for (int i = 0; i < job->count; i++) {
         const Interval *p = &job->interval[i];
         double          falls = 0, direct = 0, diffuse = 0, loss = 0;
@@ -59,12 +72,7 @@ void heat_past_respond(void *user, int worker, int kind)
             falls += (double)h->state[kind].falls_w_m2k[place_of(t)] / count;
             direct += sky->direct_w_m2 / count, diffuse += sky->diffuse_w_m2 / count, loss += sky->loss_w_m2 / count;
         }
-        const double         dt_s = (double)(p->to - p->from) * h->config.step_s;
-        const ColumnBoundary b = {linear_flux, linear_law, &(Linear){falls}, 0,
-                                  1e-4 * pulse_j_m2 / c->capacity_j_m2k[0]};
-        const double         before = state.heat_j_m2;
-        column_step(&state, c, NULL, &b, dt_s);
-        const double per_w_m2 = (before - state.heat_j_m2) / falls / pulse_j_m2;
+        const double per_w_m2 = heat_pulse_step(&state, c, falls, (double)(p->to - p->from) * h->config.step_s);
         job->past->watt_k[kind][i] = (float)per_w_m2;
         job->past->sun_k[kind][i] = (float)(per_w_m2 * k->absorptance * direct);
         job->past->sky_k[kind][i] = (float)(per_w_m2 * (k->absorptance * diffuse - k->emissivity * loss));

@@ -35,7 +35,7 @@ typedef struct Ahead {
 /* The weather that warms the ground up to an exercise: at coarse times, `wide` steps apart, from the spin-up's first
  * on, then at fine ones, a step apart, up to one beyond the beginning. */
 typedef struct Course {
-    int64_t        wide, fine_from; /* steps; time of the grid */
+    int64_t        first, wide, fine_from; /* time of the grid; steps; time of the grid */
     int            coarse, fine;
     GroundWeather *at; /* [coarse + fine] */
 } Course;
@@ -86,32 +86,50 @@ int heat_past_begin(Heat *h, HeatPast *out, Interval interval[heat_past]);
 /* The responses of a kind of ground, a PoolTask: K now for 1 W/m2 over each interval. user: PastJob. */
 void heat_past_respond(void *user, int worker, int kind);
 
+/* A pulse of heat at the surface of a column whose bottom lets nothing through, marched back in time by steps: K at the
+ * surface now for 1 W/m2 into it over that step. falls: of what leaves it, W/(m2 K). */
+void   heat_pulse_start(ColumnState *out, const Column *column);
+double heat_pulse_step(ColumnState *state, const Column *column, double falls_w_m2k, double dt_s);
+
 /* ---- the weather that warms it: heat_course.c -------------------------------------------------- */
 
 static const double day_s = 86400, slot_s = 1800;
 
 /* On the pool. */
-void heat_run(const Heat *h, int count, PoolTask *task, void *user);
+void heat_run(Pool *pool, int count, PoolTask *task, void *user); /* pool NULL: one after the other */
 /* Number of steps in half an hour, and of such strides in a day. */
-static inline int64_t heat_half_hour(const Heat *h) { return (int64_t)fmax(1, round(slot_s / h->config.step_s)); }
-static inline int     heat_day_strides(const Heat *h)
+static inline int64_t heat_half_hour(const HeatConfig *c) { return (int64_t)fmax(1, round(slot_s / c->step_s)); }
+static inline int     heat_day_strides(const HeatConfig *c)
 {
-    const int64_t day = (int64_t)round(day_s / h->config.step_s), stride = heat_half_hour(h);
+    const int64_t day = (int64_t)round(day_s / c->step_s), stride = heat_half_hour(c);
     return (int)((day + stride - 1) / stride);
 }
-/* From first to begun_index: by half hours till the morning before, then by steps. */
-Status heat_find_course(Heat *h);
+/* From the times of the grid first to begun: by half hours till the morning before, then by steps. The caller frees
+ * out->at. */
+Status heat_course_find(Course *out, const HeatConfig *config, int64_t first, int64_t begun);
 /* At a time of the course. */
-static inline const GroundWeather *heat_weather_of(const Heat *h, int64_t index)
+static inline const GroundWeather *heat_course_at(const Course *c, int64_t index)
 {
-    const Course *c = &h->course;
-    return &c->at[index >= c->fine_from ? c->coarse + (index - c->fine_from) : (index - h->first) / c->wide];
+    return &c->at[index >= c->fine_from ? c->coarse + (index - c->fine_from) : (index - c->first) / c->wide];
 }
+
+/* Half hours of the day past (of UTC, by their middle) with the sun up: slot_of of each, -1: night, and where the sun
+ * stood. Returns how many. */
+int heat_day_sun(int slot_of[heat_day_slots], float d_enu[3][heat_day_slots], const HeatConfig *config);
+
+/* ---- columns: heat.c --------------------------------------------------------------------------- */
+
+/* Normal of a node of the square of facets. */
+void heat_facet_normal(double n_enu[3], int u, int v, int facets);
+/* Of steps of dt_s, and of those that it is halved into. */
+void heat_factors_of(ColumnFactors out[heat_halvings], const Column *layers, double dt_s);
 
 /* ---- between runs: heat_kept.c ----------------------------------------------------------------- */
 
 /* h: with its course, its layers and kinds. */
 CacheKey heat_kept_key(const Heat *h);
+/* All of a kind of ground, into a key. */
+void heat_kept_ground(CacheKey *key, const GroundKind *kind);
 /* KeptValues of a Heat whose columns are started: its state at the beginning, and a step on. */
 KeptValues heat_kept_values;
 

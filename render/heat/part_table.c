@@ -19,7 +19,8 @@ static const TableColumn role_columns[] = {
     {"role", TABLE_NAMED, ROLE(role), .high = HEAT_ROLE_COUNT - 1, .named = role_named, .key = true},
     {"thickness_mm", TABLE_DOUBLE, ROLE(part.thickness_m), .low = 0.1, .high = 1000, .unit = 1e-3},
     {"inside", TABLE_CHOICE, ROLE(part.inside),
-     .choices = "none, engine, cabin, exhaust, turbine, motor, body, room, flue, grain"},
+     .choices = "none, engine, cabin, exhaust, turbine, motor, body, room, flue, grain, fire, ember, "
+                "smoulder"},
     {"inside_w_m2k", TABLE_DOUBLE, ROLE(part.inside_w_m2k), .low = 0, .high = 1e4},
     {"running_w_m2k", TABLE_DOUBLE, ROLE(part.running_w_m2k), .low = 0, .high = 1e4},
     {"drive", TABLE_CHOICE, ROLE(part.drive), .choices = "none, motion, firing"},

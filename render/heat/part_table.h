@@ -16,6 +16,9 @@ typedef enum PartInside {
     INSIDE_ROOM,
     INSIDE_FLUE,
     INSIDE_GRAIN,
+    INSIDE_FIRE,
+    INSIDE_EMBER,
+    INSIDE_SMOULDER,
     INSIDE_COUNT
 } PartInside;
 

@@ -9,7 +9,7 @@ Status vehicle_heat_create(VehicleHeat **out, const VehicleHeatConfig *config, c
     if (!h) return STATUS_NO_MEMORY;
     h->config = *config;
     h->world = *world;
-    h->models = catalog_model_count(world->catalog);
+    h->models = world->catalog ? catalog_model_count(world->catalog) : tracer_model_count(world->tracer);
     h->shape = calloc((size_t)h->models + 1, sizeof *h->shape);
     h->shaped = calloc((size_t)h->models + 1, sizeof *h->shaped);
     h->met_s = malloc(((size_t)h->models + 1) * sizeof *h->met_s);
@@ -54,6 +54,11 @@ static Status need_shape(VehicleHeat *h, int m)
 /* Whether entities are worked out where they are met, without waiting. */
 static bool at_once(const VehicleHeat *h) { return !h->window.metered || !isfinite(h->config.window_us); }
 
+static bool has_shape(const VehicleHeat *h, int m)
+{
+    return h->world.catalog ? catalog_has_shape(h->world.catalog, m) : tracer_model(h->world.tracer, m) != NULL;
+}
+
 /* Some models whose patches are needed by entities from *next on are cut by other threads meanwhile. */
 static Status cut_ahead(VehicleHeat *h, const Snapshot *snapshot, int *next)
 {
@@ -61,8 +66,7 @@ static Status cut_ahead(VehicleHeat *h, const Snapshot *snapshot, int *next)
     for (int m = 0; m < h->models; m++) ahead += h->world.patches->ahead[m] != NULL;
     for (; *next < snapshot->count && ahead < thread_processors(); ++*next) {
         const int m = snapshot->entity[*next].model;
-        if (m < 0 || m >= h->models || h->shaped[m] || !catalog_has_shape(h->world.catalog, m) ||
-            h->world.patches->cut[m] || h->world.patches->ahead[m])
+        if (m < 0 || m >= h->models || h->shaped[m] || !has_shape(h, m) || h->world.patches->cut[m] || h->world.patches->ahead[m])
             continue;
         const Status status = tracer_need(h->world.tracer, m);
         if (status != STATUS_OK) return status;
@@ -98,6 +102,8 @@ size_t vehicle_heat_bytes(const VehicleHeat *h)
                                      tracer_model(h->world.tracer, h->state[i]->model));
     return bytes;
 }
+
+void vehicle_heat_limit(VehicleHeat *h, double window_us) { h->config.window_us = window_us; }
 
 bool vehicle_heat_waits(const VehicleHeat *h) { return h->waiting > 0; }
 
@@ -201,8 +207,7 @@ static Status meet(VehicleHeat *h, const Snapshot *snapshot)
             s = was[at++];
             if (!is_same(s, e)) vehicle_state_destroy(s), s = NULL;
         }
-        if (e->model < 0 || e->model >= h->models || !catalog_has_shape(h->world.catalog, e->model) ||
-            h->count == h->config.capacity) {
+        if (e->model < 0 || e->model >= h->models || !has_shape(h, e->model) || h->count == h->config.capacity) {
             h->counters.left_out += h->count == h->config.capacity;
             vehicle_state_destroy(s);
             continue;

@@ -85,7 +85,7 @@ typedef struct VehicleHeat VehicleHeat;
 
 /* The world's own; they outlive it. */
 typedef struct VehicleHeatWorld {
-    const Catalog    *catalog;
+    const Catalog    *catalog; /* NULL: all models of the tracer have a shape, but for those that are NULL */
     const Materials  *materials;
     const PartTable  *table;
     const LocalFrame *frame;
@@ -106,6 +106,8 @@ Status vehicle_heat_create(VehicleHeat **out, const VehicleHeatConfig *config, c
 void   vehicle_heat_destroy(VehicleHeat *heat); /* accepts NULL */
 /* At a time not before the last. */
 Status vehicle_heat_tick(VehicleHeat *heat, const Snapshot *snapshot);
+/* Another window_us from the next tick on. */
+void vehicle_heat_limit(VehicleHeat *heat, double window_us);
 /* Whether work is left for the next tick. */
 bool vehicle_heat_waits(const VehicleHeat *heat);
 /* Fills first_patch and patch_k of a snapshot at or after the last tick. */

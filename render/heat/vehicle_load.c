@@ -68,9 +68,24 @@ static void add_inside(NetworkLoad *load, const PartRow *row, const MachineRow *
     case INSIDE_GRAIN:
         add_film(load, area_m2 * film * (double)d->flare, 1900);
         break;
+    case INSIDE_FIRE:
+        add_film(load, area_m2 * film * (double)d->burning, 1100);
+        break;
+    case INSIDE_EMBER:
+        add_film(load, area_m2 * film * (double)d->burning, 850);
+        break;
+    case INSIDE_SMOULDER:
+        add_film(load, area_m2 * film * (double)d->burning, 400);
+        break;
     default:
         break;
     }
+}
+
+/* What burns by itself: no fire heats it from within. */
+static bool is_fire(PartInside inside)
+{
+    return inside == INSIDE_FIRE || inside == INSIDE_EMBER || inside == INSIDE_SMOULDER;
 }
 
 /* Shares of a patch's hemisphere. own: of its partners', the part that is left; near: all that its neighbours take. */
@@ -162,7 +177,8 @@ static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchVie
     }
     if (m->near) around_w_m2 += left.near * (double)m->near_w_m2[i];
     m->sent_w_m2[i] = (float)((1 - skin->absorptance) * sun_w_m2);
-    at->heat_w += open * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);
+    const double flame = is_fire(skin->row.inside) ? 0 : flame_w_m2 * (double)d->burning;
+    at->heat_w += open * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame);
     at->emits_m2 = e * open;
     add_film(at, open * film_at(fmax(speed_mps, (double)m->gas_mps[i]), p->air_density),
              p->air_k + vehicle_recovery_k(speed_mps) + (double)m->gas_k[i]);
@@ -173,9 +189,9 @@ static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchVie
         at->heat_w += 0.5 * w;
         load[skin->inner].heat_w += 0.5 * w;
     }
-    /* a grain burns at its surface */
-    add_inside(&load[skin->row.inside == INSIDE_GRAIN ? skin->surface : skin->inner], &skin->row, &m->shape->machine, d,
-               area, p->air_k);
+    /* a grain or fire burns at its surface, and that of a heap is its crust */
+    const bool outside = skin->row.inside == INSIDE_GRAIN || is_fire(skin->row.inside);
+    add_inside(&load[outside ? skin->surface : skin->inner], &skin->row, &m->shape->machine, d, area, p->air_k);
 }
 
 static void add_gas(VehicleMoment *m, const JetPath *path)

@@ -1,0 +1,61 @@
+/* render/frame/world_scenery.c: the heat of scenery, by the weather's course that warms the world's ground. */
+#include "render/frame/world.h"
+
+#include <stdlib.h>
+
+static void wind_there(double wind_enu_mps[3], double unix_s, const void *user)
+{
+    const HeatDrive *drive = user;
+    Weather          w;
+    weather_at(&w, drive->course, unix_s);
+    const double mps = w.wind_mps * world_low_wind();
+    wind_enu_mps[0] = -mps * sin(w.wind_from_rad);
+    wind_enu_mps[1] = -mps * cos(w.wind_from_rad);
+    wind_enu_mps[2] = 0;
+}
+
+static Status open_constructions(Constructions *out)
+{
+    char path[512], layers[512];
+    if (!etc_path(path, sizeof path, "constructions.csv") ||
+        !etc_path(layers, sizeof layers, "construction_layers.csv")) {
+        log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
+        return STATUS_BAD_VALUE;
+    }
+    return constructions_open(out, path, layers);
+}
+
+Status world_warm_scenery(World *world, const Scenery *scenery, const HeatConfig *config, const char *isa, Pool *pool)
+{
+    char              path[512];
+    SceneryHeatConfig c = scenery_heat_default_config();
+    Constructions    *constructions = calloc(1, sizeof *constructions);
+    GroundKinds      *ground = calloc(1, sizeof *ground);
+    const int         facets = c.heat.facets;
+    Status            status = constructions && ground ? STATUS_OK : STATUS_NO_MEMORY;
+    if (!etc_path(path, sizeof path, "ground_heat.csv")) status = STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = open_constructions(constructions);
+    if (status == STATUS_OK) status = ground_kinds_open(ground, path, &world->materials);
+    if (status == STATUS_OK) {
+        c.heat = *config;
+        c.heat.facets = facets, c.heat.pool = pool, c.heat.cache = world->cache;
+        c.heat.weather = world_heat_weather, c.heat.user = world->drive;
+        c.east_rad = world->frame.origin.lon_rad;
+        c.wind = wind_there;
+        c.ground = ground, c.constructions = constructions;
+        c.materials = &world->materials, c.parts = &world->parts, c.frame = &world->frame;
+        c.shadow = world->shadow, c.isa = isa;
+        scenery_heat_destroy(world->scenery_heat);
+        world->scenery_heat = NULL;
+        status = scenery_heat_create(&world->scenery_heat, &c, scenery);
+    }
+    free(ground);
+    free(constructions);
+    return status;
+}
+
+Status world_scenery_temps(SceneryTemps **out, const World *world, double unix_s, Arena *arena)
+{
+    *out = NULL;
+    return world->scenery_heat ? scenery_temps_at(out, world->scenery_heat, unix_s, arena) : STATUS_OK;
+}
