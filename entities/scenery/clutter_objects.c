@@ -4,13 +4,16 @@
 
 #include <stdlib.h>
 
-static EntityDrives drives_of(int mode)
+/* Of what has stopped: what it did until then. */
+static EntityDrives drives_of(const ClutterRow *row, int mode)
 {
-    EntityDrives drives = {0};
+    static const double before = 0.8; /* of an engine that has stopped: between idling and full power; estimate */
+    EntityDrives        drives = {0};
     if (mode == clutter_mode_idles) drives.engine = (float)drives_idle;
     else if (mode == clutter_mode_lives) drives.alive = 1;
-    else if (mode == clutter_mode_burns) drives.burning = 1;
-    else if (mode >= clutter_mode_drives && mode < clutter_mode_stopped) {
+    else if (mode == clutter_mode_burns) drives.burning = (float)row->fire;
+    else if (mode >= clutter_mode_stopped) drives.engine = (float)before;
+    else if (mode >= clutter_mode_drives) {
         const double speed_mps = clutter_speed_mps[mode - clutter_mode_drives];
         drives.engine = (float)fmin(1, drives_idle + (1 - drives_idle) * speed_mps / 10);
         drives.speed_mps = (float)speed_mps;
@@ -99,7 +102,7 @@ static Status add_thing(Added *a, ClutterWork *work, const ClutterThing *t)
         const int mode = coarse_mode(t->mode, a->grain), heading = coarse_heading(t->heading_rad, a->grain);
         *state = s->states;
         s->state[s->states++] = (SceneryState){.model = v->model,
-                                               .drives = drives_of(mode),
+                                               .drives = drives_of(v->row, mode),
                                                .heading_rad = (float)(2 * pi_rad * heading / clutter_headings),
                                                .stood_s = (float)stood_s_of(mode)};
     }
