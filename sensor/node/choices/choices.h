@@ -104,9 +104,9 @@ Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *confi
 
 /* Where plants stand in a run: about what is on the ground, clear of what the exercise says.
  *
- * On invented ground no plant stands on the path of anything on the ground, where a burst hit it, or where a flight or
- * the line of sight of a shot that hit passes low, as far as these are known when the world is made. Real trees stay;
- * entities that begin within a trunk are counted. */
+ * On invented ground no stem stands within what drove on the ground, where a burst hit it, or where a flight or the
+ * line of sight of a shot that hit passes low, as far as the log tells that the world is made from; nothing else of the
+ * ground and its plants follows from a path. Real trees stay; entities that begin within a trunk are counted. */
 typedef struct WoodsChoice {
     bool        on; /* terrain.woods */
     WoodsConfig config;
