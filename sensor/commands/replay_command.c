@@ -222,10 +222,23 @@ static void log_nothing(const Run *run, const DisLog *log)
                   path, (unsigned long long)c->datagrams, path);
 }
 
+/* What the world follows from: what a live node had heard when it made its own, as its recording notes, else all. */
+static DisLog world_log(Run *run)
+{
+    const Config *config = &run->options.config;
+    DisLog        view, from, all = made_log_by(run->made, config, false);
+    run->noted = world_note_read(&run->world_note, run->made->log.notes);
+    if (!run->noted) return all;
+    const DisLog arrived = made_log_by(run->made, config, true);
+    double       until_s = run->world_note.until_s;
+    run->noted = player_opening_until(&view, &from, &until_s, &arrived, config);
+    return run->noted ? from : all;
+}
+
 static Status open_log(Run *run)
 {
     const Options *o = &run->options;
-    DisLog         heard;
+    DisLog         heard, from;
     Status         status = run_made(run);
     if (status == STATUS_OK) status = made_log(run->made, o->log, &o->config);
     run->stopped = status != STATUS_OK && stop_asked(); /* while a pipe was waited for */
@@ -246,7 +259,8 @@ static Status open_log(Run *run)
     run->view = heard = *log;
     const bool starts =
         !o->config.exercise.causal || player_opening(&run->view, &heard, &run->until_s, log, &o->config);
-    status = run_survey(run, &heard);
+    from = world_log(run);
+    status = run_survey(run, &heard, &from);
     if (status == STATUS_OK && dis_log_failed(log)) status = STATUS_IO;
     if (status == STATUS_OK && (!starts || run->made->survey.track_count == 0)) {
         log_nothing(run, log);

@@ -389,6 +389,10 @@ static Status open_files(Live *l)
             "run: %s has no room for which frames give up sampling (quality.deadline)%s (pcap): a replay has it in all; "
             "name it .pcapng",
             config->record.path, radar ? ", or are without radar" : "");
+    if (strcasecmp(output_ending(config->record.path), ".pcap") == 0)
+        log_warn("run: %s has no room for what the ground was made from (pcap): a replay makes its own by the whole "
+                 "recording; name it .pcapng",
+                 config->record.path);
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 
@@ -450,7 +454,7 @@ static Status run_node(Live *l)
     status = listen_first(&heard, l);
     log_status(NULL);
     if (status == STATUS_OK && heard) {
-        status = run_survey(&l->run, &l->run.view);
+        status = run_survey(&l->run, &l->run.view, &l->run.view);
         if (status == STATUS_OK) status = run_host(&l->run, NULL);
     } else {
         conclude(l);

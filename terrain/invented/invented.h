@@ -135,8 +135,9 @@ Status invented_correct(struct WorkLevel *level, int levels, const LocalFrame *f
 
 /* Roads, lanes, tracks and streams of invented ground, and the plots of its villages: a pure function of the seed, the
  * terrain and the fixes. Streams follow the descent of the ground and end in a pond, another stream, the sea or the
- * rim of the finest level; roads join the villages and the rim. Nothing of it is laid over a place where a vehicle was
- * reported, except a track along the route of a vehicle. Heights are not changed. */
+ * rim of the finest level; roads join the villages and the rim, tracks lead from roads into fields and woods. Where
+ * vehicles were reported or will be changes nothing of it, but that no house and no pond is where one was. Heights are
+ * not changed. */
 typedef enum WayKind { WAY_NONE, WAY_ROAD, WAY_LANE, WAY_TRACK, WAY_STREAM, WAY_GULLY, WAY_KINDS } WayKind;
 
 /* The nearest way about a place. */

@@ -64,7 +64,7 @@ static void pass_segments(Kept *kept, Ways *w)
 /* The items of each index cell, which name rows that there are. */
 static void pass_index(Kept *kept, Ways *w)
 {
-    const int rows[] = {w->segments, w->ponds, w->plots, w->clears}, cells = w->nx * w->ny;
+    const int rows[] = {w->segments, w->ponds, w->plots, 0}, cells = w->nx * w->ny;
     if (!make_room(kept, &w->start, cells + 1, sizeof *w->start, sizeof *w->start)) return;
     kept_pass(kept, w->start, ((size_t)cells + 1) * sizeof *w->start);
     if (!kept->good) return;
@@ -76,23 +76,21 @@ static void pass_index(Kept *kept, Ways *w)
     kept_pass(kept, w->item, (size_t)items * sizeof *w->item);
     for (int n = 0; kept_is_read(kept) && kept->good && n < items; n++)
         kept_check(kept,
-                   w->item[n] >> 28 <= WAY_ITEM_CLEAR && (int)(w->item[n] & 0x0fffffff) < rows[w->item[n] >> 28 & 3]);
+                   w->item[n] >> 28 < WAY_ITEMS && (int)(w->item[n] & 0x0fffffff) < rows[w->item[n] >> 28 & 3]);
 }
 
 static void pass_ways(Kept *kept, Ways *w)
 {
     enum { most_side = 1 << 14 };
     double number[] = {w->x0_m, w->y0_m, w->side_m[0], w->side_m[1], w->index_m, w->coarse_m};
-    _Static_assert(sizeof(HousePlot) == 10 * sizeof(double) && sizeof(Pond) == (3 + pond_radii) * sizeof(float) &&
-                       sizeof(ClearPlace) == 2 * sizeof(float),
+    _Static_assert(sizeof(HousePlot) == 10 * sizeof(double) && sizeof(Pond) == (3 + pond_radii) * sizeof(float),
                    "numbers of one kind alone");
     kept_doubles(kept, number, 6);
     kept_check(kept, number[2] > 0 && number[3] > 0 && number[4] > 0 && number[5] > 0);
     w->x0_m = number[0], w->y0_m = number[1], w->side_m[0] = number[2], w->side_m[1] = number[3];
     w->index_m = number[4], w->coarse_m = number[5];
-    int *const count[] = {&w->nx,    &w->ny,    &w->cx,     &w->cy,   &w->segments,
-                          &w->ponds, &w->plots, &w->clears, &w->ways, &w->villages};
-    for (int k = 0; k < 10; k++) pass_count(kept, count[k], k < 4 ? most_side : 0x0fffffff);
+    int *const count[] = {&w->nx, &w->ny, &w->cx, &w->cy, &w->segments, &w->ponds, &w->plots, &w->ways, &w->villages};
+    for (int k = 0; k < 9; k++) pass_count(kept, count[k], k < 4 ? most_side : 0x0fffffff);
     kept_check(kept, w->nx >= 1 && w->ny >= 1 && w->cx >= 2 && w->cy >= 2 && w->villages <= ways_most_villages);
     if (!kept->good) return;
     if (make_room(kept, &w->segment, w->segments, segment_octets, sizeof *w->segment)) pass_segments(kept, w);
@@ -100,8 +98,6 @@ static void pass_ways(Kept *kept, Ways *w)
         kept_floats(kept, &w->pond->x_m, (size_t)w->ponds * (sizeof *w->pond / sizeof(float)));
     if (make_room(kept, &w->plot, w->plots, sizeof *w->plot, sizeof *w->plot) && w->plots)
         kept_doubles(kept, &w->plot->x_m, (size_t)w->plots * (sizeof *w->plot / sizeof(double)));
-    if (make_room(kept, &w->clear, w->clears, sizeof *w->clear, sizeof *w->clear) && w->clears)
-        kept_floats(kept, &w->clear->x_m, (size_t)w->clears * (sizeof *w->clear / sizeof(float)));
     if (!kept->good) return;
     pass_index(kept, w);
     kept_doubles(kept, w->village[0], 2 * (size_t)w->villages);

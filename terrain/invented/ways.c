@@ -61,8 +61,8 @@ double ways_height(const Ways *ways, const WaysGround *ground, double x_m, doubl
 
 /* ---- vehicles --------------------------------------------------------------------------------- */
 
-/* Collects the places to be kept clear: one for each square of 3 m that holds a fix. */
-static Status gather_clear(Ways *ways, const WaysGround *ground)
+/* Collects the places where vehicles were reported: one for each square of 3 m that holds a fix. */
+static Status gather_reported(Ways *ways, const WaysGround *ground)
 {
     static const double grain_m = 3;
     uint32_t            mask = 255;
@@ -79,23 +79,22 @@ static Status gather_clear(Ways *ways, const WaysGround *ground)
         while (taken[at] && taken[at] != key) at = (at + 1) & mask;
         if (taken[at]) continue;
         taken[at] = key;
-        status = ways_reserve((void **)&ways->clear, &ways->clears_room, ways->clears + 1, sizeof *ways->clear);
-        if (status == STATUS_OK) ways->clear[ways->clears++] = (ClearPlace){(float)x, (float)y};
+        status =
+            ways_reserve((void **)&ways->reported, &ways->reported_room, ways->reports + 1, sizeof *ways->reported);
+        if (status != STATUS_OK) break;
+        ways->reported[ways->reports][0] = x, ways->reported[ways->reports][1] = y;
+        ways->reports++;
     }
     free(taken);
     if (status != STATUS_OK) return status;
-    double *xy = malloc(2 * ((size_t)ways->clears + 1) * sizeof *xy);
-    if (!xy) return STATUS_NO_MEMORY;
-    for (int n = 0; n < ways->clears; n++)
-        xy[2 * n] = (double)ways->clear[n].x_m, xy[2 * n + 1] = (double)ways->clear[n].y_m;
-    status = near_grid_create(&ways->clear_near, 96, ways->clears, xy, xy + 1, 2 * sizeof *xy);
-    free(xy);
-    return status;
+    static const double none[2] = {0, 0};
+    const double       *xy = ways->reports ? ways->reported[0] : none;
+    return near_grid_create(&ways->reported_near, 96, ways->reports, xy, xy + 1, sizeof *ways->reported);
 }
 
 bool ways_vehicle_near(const Ways *ways, double x_m, double y_m, double near_m)
 {
-    const NearGrid *grid = &ways->clear_near;
+    const NearGrid *grid = &ways->reported_near;
     const int64_t   west = near_grid_cell(grid, x_m - near_m), east = near_grid_cell(grid, x_m + near_m);
     const int64_t   south = near_grid_cell(grid, y_m - near_m), north = near_grid_cell(grid, y_m + near_m);
     for (int64_t j = south; j <= north; j++)
@@ -103,8 +102,8 @@ bool ways_vehicle_near(const Ways *ways, double x_m, double y_m, double near_m)
             int first, end;
             near_grid_bucket(grid, i, j, &first, &end);
             for (int n = first; n < end; n++) {
-                const ClearPlace *c = &ways->clear[grid->item[n]];
-                const double      dx = (double)c->x_m - x_m, dy = (double)c->y_m - y_m;
+                const double *place = ways->reported[grid->item[n]];
+                const double  dx = place[0] - x_m, dy = place[1] - y_m;
                 if (dx * dx + dy * dy < near_m * near_m) return true;
             }
         }
@@ -133,10 +132,8 @@ static Box item_box(const Ways *ways, WayItem type, int n)
         const double     x = p->x_m - ways->x0_m, y = p->y_m - ways->y0_m;
         return (Box){x - reach, x + reach, y - reach, y + reach};
     }
-    const bool   pond = type == WAY_ITEM_POND;
-    const double x = (double)(pond ? ways->pond[n].x_m : ways->clear[n].x_m);
-    const double y = (double)(pond ? ways->pond[n].y_m : ways->clear[n].y_m);
-    const double reach = pond ? (double)ways->pond[n].most_m + 8 : clear_radius_m + 1.5;
+    const Pond  *pond = &ways->pond[n];
+    const double x = (double)pond->x_m, y = (double)pond->y_m, reach = (double)pond->most_m + 8;
     return (Box){x - reach, x + reach, y - reach, y + reach};
 }
 
@@ -167,12 +164,12 @@ static Status make_index(Ways *ways)
         free(fill);
         return STATUS_NO_MEMORY;
     }
-    const int count[] = {ways->segments, ways->ponds, ways->plots, ways->clears};
-    for (int type = 0; type < 4; type++) file_items(ways, (WayItem)type, count[type], NULL);
+    const int count[WAY_ITEMS] = {ways->segments, ways->ponds, ways->plots};
+    for (int type = 0; type < WAY_ITEMS; type++) file_items(ways, (WayItem)type, count[type], NULL);
     for (int c = 0; c < cells; c++) ways->start[c + 1] += ways->start[c];
     memcpy(fill, ways->start, (size_t)cells * sizeof *fill);
     ways->item = malloc(((size_t)ways->start[cells] + 1) * sizeof *ways->item);
-    for (int type = 0; type < 4 && ways->item; type++) file_items(ways, (WayItem)type, count[type], fill);
+    for (int type = 0; type < WAY_ITEMS && ways->item; type++) file_items(ways, (WayItem)type, count[type], fill);
     free(fill);
     return ways->item ? STATUS_OK : STATUS_NO_MEMORY;
 }
@@ -262,13 +259,6 @@ static bool ways_nearest(WayPlace *out, const Ways *ways, int32_t cell, double x
 
 /* ---- class ------------------------------------------------------------------------------------ */
 
-static bool is_open(SurfaceClass surface)
-{
-    return surface == SURFACE_GRASS || surface == SURFACE_DRY_GRASS || surface == SURFACE_BARE_SOIL ||
-           surface == SURFACE_TRACK || surface == SURFACE_CROP || surface == SURFACE_PLOUGHED ||
-           surface == SURFACE_SAND;
-}
-
 /* The class that a way gives to a place `beyond_m` outside of its edge; SURFACE_NONE: it does not change it. */
 static SurfaceClass way_surface(WayKind kind, double beyond_m, double half_m, float wander, float patch)
 {
@@ -328,7 +318,7 @@ SurfaceClass ways_surface(const Ways *ways, int32_t cell, double x_m, double y_m
 {
     SurfaceClass surface = field;
     const double x = x_m - ways->x0_m, y = y_m - ways->y0_m, w = (double)wander;
-    bool         clear = false, house = false;
+    bool         house = false;
     for (int n = ways->start[cell]; n < ways->start[cell + 1]; n++) {
         const uint32_t number = ways->item[n] & 0xfffffff;
         switch ((WayItem)(ways->item[n] >> 28)) {
@@ -349,11 +339,8 @@ SurfaceClass ways_surface(const Ways *ways, int32_t cell, double x_m, double y_m
             if (found != SURFACE_NONE && !house) surface = found, house = true;
             break;
         }
-        case WAY_ITEM_CLEAR: {
-            const ClearPlace *c = &ways->clear[number];
-            clear |= hypot(x - (double)c->x_m, y - (double)c->y_m) + w < clear_radius_m;
+        case WAY_ITEMS:
             break;
-        }
         }
     }
     WayPlace way;
@@ -362,7 +349,6 @@ SurfaceClass ways_surface(const Ways *ways, int32_t cell, double x_m, double y_m
         const bool         hard = way.kind <= WAY_TRACK || surface != SURFACE_WATER;
         if (found != SURFACE_NONE && hard && !(house && found == SURFACE_GRASS)) surface = found;
     }
-    if (clear && !is_open(surface)) surface = patch > 0 ? SURFACE_GRASS : SURFACE_DRY_GRASS;
     return surface;
 }
 
@@ -382,14 +368,16 @@ Status ways_create(Ways **out, const WaysGround *ground)
     ways->coarse_m = fmax(coarse_step_m, longest_m / 300);
     ways->cx = (int)fmax(floor(ways->side_m[0] / ways->coarse_m) + 1, 2);
     ways->cy = (int)fmax(floor(ways->side_m[1] / ways->coarse_m) + 1, 2);
-    Status status = gather_clear(ways, ground);
+    Status status = gather_reported(ways, ground);
     if (status == STATUS_OK) status = ways_lay_streams(ways, ground);
     if (status == STATUS_OK) status = ways_lay_roads(ways, ground);
     if (status == STATUS_OK) status = make_index(ways);
-    near_grid_destroy(&ways->clear_near), near_grid_destroy(&ways->stream_near);
-    free(ways->height), free(ways->flow), free(ways->road_vertex);
+    near_grid_destroy(&ways->reported_near), near_grid_destroy(&ways->stream_near);
+    free(ways->height), free(ways->flow), free(ways->road_vertex), free(ways->reported);
     ways->height = ways->flow = NULL;
     ways->road_vertex = NULL;
+    ways->reported = NULL;
+    ways->reports = ways->reported_room = 0;
     if (status != STATUS_OK) ways_free(ways);
     else *out = ways;
     return status;
@@ -398,8 +386,8 @@ Status ways_create(Ways **out, const WaysGround *ground)
 void ways_free(Ways *ways)
 {
     if (!ways) return;
-    near_grid_destroy(&ways->clear_near), near_grid_destroy(&ways->stream_near);
-    free(ways->start), free(ways->item), free(ways->segment), free(ways->pond), free(ways->plot), free(ways->clear);
+    near_grid_destroy(&ways->reported_near), near_grid_destroy(&ways->stream_near);
+    free(ways->start), free(ways->item), free(ways->segment), free(ways->pond), free(ways->plot), free(ways->reported);
     free(ways->wet), free(ways->height), free(ways->flow), free(ways->road_vertex);
     free(ways);
 }

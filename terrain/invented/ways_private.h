@@ -2,15 +2,19 @@
  *
  * ways.c          the index, the nearest way, the class of a place
  * ways_streams.c  streams, ponds and gullies; how wet and how worn the ground is
- * ways_roads.c    roads between villages, tracks along the routes of vehicles
- * ways_villages.c villages, lanes, plots */
+ * ways_roads.c    roads between villages
+ * ways_tracks.c   tracks into fields and woods
+ * ways_villages.c villages, lanes, plots
+ *
+ * None of it follows from where vehicles were or will be, but for two exceptions that no track shows: a house is not
+ * built, and a pond not filled, where one was reported. */
 #ifndef TERRAIN_INVENTED_WAYS_PRIVATE_H
 #define TERRAIN_INVENTED_WAYS_PRIVATE_H
 
 #include "terrain/invented/invented_eight.h"
 #include "terrain/invented/invented_private.h"
 
-enum { pond_radii = 32, ways_most_villages = 64, clear_radius_m = 8 };
+enum { pond_radii = 32, ways_most_villages = 64 };
 
 /* Positions are relative to the south-west corner of the ways' square. */
 typedef struct WaySegment {
@@ -26,11 +30,7 @@ typedef struct Pond {
     float radius_m[pond_radii];
 } Pond;
 
-typedef struct ClearPlace {
-    float x_m, y_m;
-} ClearPlace;
-
-typedef enum WayItem { WAY_ITEM_SEGMENT, WAY_ITEM_POND, WAY_ITEM_PLOT, WAY_ITEM_CLEAR } WayItem;
+typedef enum WayItem { WAY_ITEM_SEGMENT, WAY_ITEM_POND, WAY_ITEM_PLOT, WAY_ITEMS } WayItem;
 
 struct Ways {
     double      x0_m, y0_m, side_m[2];
@@ -38,13 +38,11 @@ struct Ways {
     int         nx, ny;
     int32_t    *start; /* [nx ny + 1] first item of each cell in `item` */
     uint32_t   *item;  /* items, as WayItem << 28 | number */
-    int         segments, ponds, plots, clears, ways, villages;
-    int         segments_room, ponds_room, plots_room, clears_room;
+    int         segments, ponds, plots, ways, villages;
+    int         segments_room, ponds_room, plots_room;
     WaySegment *segment;
     Pond       *pond;
     HousePlot  *plot;
-    ClearPlace *clear;
-    NearGrid    clear_near;  /* grid of the clear places, used while ways are laid */
     NearGrid    stream_near; /* grid of the starts of streams' segments, used while roads are laid */
     double      village[ways_most_villages][2];
     /* A coarse grid of how wet (hollows, valleys) or worn (crests) the ground is, -127 .. 127; an entry has the four
@@ -56,13 +54,17 @@ struct Ways {
     float   *height;      /* [cy][cx] above the ellipsoid's curve */
     float   *flow;        /* [cy][cx] how many cells drain through this one */
     int32_t *road_vertex; /* [cy][cx] a road's segment in this cell; -1: none */
+    double (*reported)[2]; /* [reports] where vehicles were reported, one place in each square of 3 m */
+    int      reports, reported_room;
+    NearGrid reported_near;
 };
 
 Status ways_lay_streams(Ways *ways, const WaysGround *ground);
 /* Lays villages, roads, lanes, plots and tracks; call it after the streams. */
 Status ways_lay_roads(Ways *ways, const WaysGround *ground);
+Status ways_lay_tracks(Ways *ways, const WaysGround *ground);
 
-/* Villages lie on gentle dry land without vehicles, one in most squares of this side. They are chosen before there are
+/* Villages lie on gentle dry land, one in most squares of this side. They are chosen before there are
  * roads; their lanes and plots are laid once roads join them. */
 static const double ways_village_grid_m = 2600;
 Status              ways_choose_villages(Ways *ways, const WaysGround *ground);
@@ -77,7 +79,7 @@ typedef struct WayLine {
 Status ways_line_add(WayLine *line, double x, double y);
 /* Draws a cubic B-spline about control points, through the first and the last, with a vertex every few metres. */
 Status ways_draw_spline(WayLine *out, const WayLine *control);
-/* Appends a way where no vehicle was reported: near a report it ends, and goes on behind it. */
+/* Appends a way along a line. */
 Status ways_lay_line(Ways *ways, WayKind kind, WayLine *line, double half_m);
 
 /* Appends a way along points relative to the square's corner, with half widths at its ends. */

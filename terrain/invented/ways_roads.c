@@ -1,10 +1,10 @@
-/* terrain/invented/ways_roads.c: roads between villages along gentle slopes, and tracks along the routes of vehicles.
- * Roads are found on the coarse grid and drawn as splines. */
+/* terrain/invented/ways_roads.c: roads between villages along gentle slopes, found on the coarse grid and drawn as
+ * splines. */
 #include "terrain/invented/ways_private.h"
 
 #include <stdlib.h>
 
-static const double vertex_m = 8, road_half_m = 3, track_half_m = 1.7;
+static const double vertex_m = 8, road_half_m = 3;
 
 /* ---- lines ------------------------------------------------------------------------------------- */
 
@@ -56,15 +56,8 @@ static int ways_post_near(const Ways *ways, double x, double y)
 
 Status ways_lay_line(Ways *ways, WayKind kind, WayLine *line, double half_m)
 {
-    /* no road passes where a vehicle was reported: it ends before, and goes on behind */
-    static const double near_m = 14;
-    const int           first = ways->segments;
-    Status              status = STATUS_OK;
-    for (int n = 0, from = 0; n <= line->count && status == STATUS_OK; n++) {
-        if (n < line->count && !ways_vehicle_near(ways, line->p[n][0], line->p[n][1], near_m)) continue;
-        status = ways_append(ways, kind, (const double(*)[2])line->p + from, n - from, half_m, half_m);
-        from = n + 1;
-    }
+    const int    first = ways->segments;
+    const Status status = ways_append(ways, kind, (const double(*)[2])line->p, line->count, half_m, half_m);
     for (int n = first; n < ways->segments && kind == WAY_ROAD; n++)
         ways->road_vertex[ways_post_near(ways, (double)ways->segment[n].x_m, (double)ways->segment[n].y_m)] = n;
     return status;
@@ -80,7 +73,7 @@ typedef struct Open {
 typedef struct Search {
     float *cost; /* [posts] least cost found so far */
     int   *from; /* [posts] */
-    float *dear; /* [posts] factor of a post's cost: high near vehicles and on water */
+    float *dear; /* [posts] factor of a post's cost: high on water */
     Open  *heap;
     int    heap_count, heap_room;
 } Search;
@@ -202,75 +195,6 @@ static Status join(Ways *ways, Search *s, int start, int goal)
     return status;
 }
 
-/* ---- columns ---------------------------------------------------------------------------------- */
-
-/* Lays tracks along the routes of vehicles: successive reports of one vehicle that go on in much the same direction.
- * Where a track leads the same way already, it is used. */
-static Status lay_columns(Ways *ways, const WaysGround *ground)
-{
-    static const double longest_m = 160, least_m = 10, shortest_route_m = 120, beside_route_m = 7;
-    WayLine             control = {0}, line = {0};
-    Status              status = STATUS_OK;
-    uint32_t            mask = (1 << 16) - 1, used = 0;
-    uint64_t           *taken = calloc((size_t)mask + 1, sizeof *taken);
-    if (!taken) return STATUS_NO_MEMORY;
-    for (int n = 0; n < ground->fix_count && status == STATUS_OK;) {
-        const GroundFix *fix = ground->fix;
-        const int        voter = fix[n].voter;
-        double           length_m = 0;
-        control.count = 0;
-        int m = n;
-        for (; m < ground->fix_count && fix[m].voter == voter && voter > 0 && status == STATUS_OK; m++) {
-            const double x = fix[m].p_enu[0] - ways->x0_m, y = fix[m].p_enu[1] - ways->y0_m;
-            if (!(x > 0 && y > 0 && x < ways->side_m[0] && y < ways->side_m[1])) break;
-            if (control.count) {
-                const double *last = control.p[control.count - 1];
-                const double  dx = x - last[0], dy = y - last[1], step = hypot(dx, dy);
-                if (step < least_m) continue;
-                if (step > longest_m) break;
-                if (control.count > 1) {
-                    const double *prior = control.p[control.count - 2];
-                    if (dx * (last[0] - prior[0]) + dy * (last[1] - prior[1]) < 0) break; /* the vehicle turned back */
-                }
-                length_m += step;
-            }
-            /* another vehicle's track may lead the same way */
-            const uint64_t key =
-                ((uint64_t)(int64_t)(x / beside_route_m) << 32 | (uint64_t)(int64_t)(y / beside_route_m)) + 1;
-            uint32_t at = (uint32_t)invented_hash(2, (int64_t)key, 0) & mask;
-            while (taken[at] && taken[at] >> 1 != key) at = (at + 1) & mask;
-            if (taken[at]) break;
-            status = ways_line_add(&control, x, y);
-        }
-        if (status == STATUS_OK && length_m > shortest_route_m && control.count > 2) {
-            line.count = 0;
-            for (int k = 0; k < control.count && status == STATUS_OK;
-                 k++) /* the track goes through the reported positions themselves */
-                status = ways_line_add(&line, control.p[k][0], control.p[k][1]);
-            if (status == STATUS_OK)
-                status =
-                    ways_append(ways, WAY_TRACK, (const double(*)[2])line.p, line.count, track_half_m, track_half_m);
-            for (int k = 1; k < control.count && used < mask / 2; k++) {
-                const double *a = control.p[k - 1], *b = control.p[k];
-                const int     parts = (int)ceil(hypot(b[0] - a[0], b[1] - a[1]) / (0.5 * beside_route_m));
-                for (int s = 0; s < parts * 9 && used < mask / 2; s++) { /* the squares around count too */
-                    const double   t = (double)(s / 9) / parts;
-                    const double   x = a[0] + t * (b[0] - a[0]), y = a[1] + t * (b[1] - a[1]);
-                    const int64_t  i = (int64_t)(x / beside_route_m) + s % 9 % 3 - 1;
-                    const int64_t  j = (int64_t)(y / beside_route_m) + s % 9 / 3 - 1;
-                    const uint64_t key = ((uint64_t)i << 32 | (uint64_t)j) + 1;
-                    uint32_t       at = (uint32_t)invented_hash(2, (int64_t)key, 0) & mask;
-                    while (taken[at] && taken[at] >> 1 != key) at = (at + 1) & mask;
-                    if (!taken[at]) taken[at] = key << 1, used++;
-                }
-            }
-        }
-        n = m > n ? m : n + 1;
-    }
-    free(control.p), free(line.p), free(taken);
-    return status;
-}
-
 /* ---- the whole -------------------------------------------------------------------------------- */
 
 /* Joins every village to the nearest one that is joined already, and some to another one; then joins the four sides. */
@@ -324,7 +248,6 @@ static Status search_create(Search *s, const Ways *ways, const WaysGround *groun
         const double x = (n % ways->cx) * ways->coarse_m, y = (n / ways->cx) * ways->coarse_m;
         /* no two posts cost the same, so that a road over a plain is not dead straight */
         s->dear[n] = 1 + 0.5f * (float)invented_unit(invented_hash(ground->seed + 63, n, 0));
-        if (ways_vehicle_near(ways, x, y, 50)) s->dear[n] += 25;
         if (ground->coast->sea_count && coast_at(ground->coast, ways->x0_m + x, ways->y0_m + y) == COAST_SEA)
             s->dear[n] += 200;
     }
@@ -350,6 +273,6 @@ Status ways_lay_roads(Ways *ways, const WaysGround *ground)
     if (status == STATUS_OK) status = join_villages(ways, &s);
     search_free(&s);
     if (status == STATUS_OK) status = ways_lay_villages(ways, ground);
-    if (status == STATUS_OK) status = lay_columns(ways, ground);
+    if (status == STATUS_OK) status = ways_lay_tracks(ways, ground);
     return status;
 }

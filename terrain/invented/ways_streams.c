@@ -245,7 +245,8 @@ static Status lay_pond(Ways *ways, const WaysGround *ground, const double p[2])
         }
     }
     for (int n = 0; n < pond_radii; n++) pond.most_m = fmaxf(pond.most_m, pond.radius_m[n]);
-    ways->pond[ways->ponds++] = pond;
+    /* a hollow where a vehicle was reported holds no water */
+    if (!ways_vehicle_near(ways, p[0], p[1], fmin((double)pond.most_m + 4, 96))) ways->pond[ways->ponds++] = pond;
     return STATUS_OK;
 }
 
@@ -258,22 +259,10 @@ static double flow_at(const Ways *ways, const double p[2])
     return (double)ways->flow[j * ways->cx + i];
 }
 
-/* The index from which on a stream stays, behind the last reported vehicle; -1: nothing of it stays. */
-static int open_from(const Trace *t, const Ways *ways)
-{
-    static const double near_m = 26;
-    for (int n = t->count - 1; n >= 0; n--)
-        if (ways_vehicle_near(ways, t->p[n][0], t->p[n][1], near_m)) return n + 1 < t->count - 3 ? n + 1 : -1;
-    return 0;
-}
-
 static Status lay_stream(Ways *ways, const WaysGround *ground, Laid *laid, Trace *t)
 {
-    static const double pond_clear_m = 90;
-    const int           last = t->count - 1, from = open_from(t, ways);
-    if (from < 0 || t->count - from < 6) return STATUS_OK;
+    const int last = t->count - 1;
     if (t->end == TRACE_PIT) {
-        if (ways_vehicle_near(ways, t->p[last][0], t->p[last][1], pond_clear_m)) return STATUS_OK;
         bool known = false;
         for (int n = 0; n < ways->ponds && !known; n++)
             known = hypot((double)ways->pond[n].x_m - t->p[last][0], (double)ways->pond[n].y_m - t->p[last][1]) < 40;
@@ -283,7 +272,7 @@ static Status lay_stream(Ways *ways, const WaysGround *ground, Laid *laid, Trace
     const double half_m = 0.5, end_m = clamp(0.5 + 0.12 * sqrt(flow_at(ways, t->p[last])), 0.6, 3.2);
     const int    first = ways->segments;
     const Status status =
-        ways_append(ways, WAY_STREAM, (const double(*)[2])t->p + from, t->count - from, half_m, end_m);
+        ways_append(ways, WAY_STREAM, (const double(*)[2])t->p, t->count, half_m, end_m);
     for (int n = first; n < ways->segments; n++)
         laid_put(laid, (double)ways->segment[n].x_m, (double)ways->segment[n].y_m, n);
     return status;
@@ -298,7 +287,6 @@ static Status lay_gully(Ways *ways, const WaysGround *ground, Laid *laid, Trace 
         const double fall = ways_height(ways, ground, t->p[count - 1][0], t->p[count - 1][1]) -
                             ways_height(ways, ground, t->p[count][0], t->p[count][1]);
         if (fall < steep * 0.6 * step_m && count > 3) break;
-        if (ways_vehicle_near(ways, t->p[count][0], t->p[count][1], 20)) break;
         count++;
     }
     if (count < 8) return STATUS_OK;

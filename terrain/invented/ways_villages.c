@@ -7,10 +7,10 @@ static const double lane_half_m = 2.2;
 
 /* ---- villages --------------------------------------------------------------------------------- */
 
-/* Chooses places for villages: gentle dry land without vehicles, one in most squares of the grid. */
+/* Chooses places for villages: gentle dry land, one in most squares of the grid. */
 static void choose_villages(Ways *ways, const WaysGround *ground)
 {
-    static const double margin_m = 300, vehicle_m = 96, steepest = 0.09;
+    static const double margin_m = 300, steepest = 0.09;
     const int           across = (int)fmax(rint(ways->side_m[0] / ways_village_grid_m), 1);
     const int           up = (int)fmax(rint(ways->side_m[1] / ways_village_grid_m), 1);
     const double        wide_m = ways->side_m[0] / across, high_m = ways->side_m[1] / up;
@@ -25,9 +25,8 @@ static void choose_villages(Ways *ways, const WaysGround *ground)
                 continue;
             bool busy = false;
             for (int m = 0; m < 9 && !busy; m++)
-                busy = ways_vehicle_near(ways, x + 130 * (m % 3 - 1), y + 130 * (m / 3 - 1), vehicle_m) ||
-                       (ground->coast->sea_count && coast_at(ground->coast, ways->x0_m + x + 250 * (m % 3 - 1),
-                                                             ways->y0_m + y + 250 * (m / 3 - 1)) != COAST_LAND);
+                busy = ground->coast->sea_count && coast_at(ground->coast, ways->x0_m + x + 250 * (m % 3 - 1),
+                                                            ways->y0_m + y + 250 * (m / 3 - 1)) != COAST_LAND;
             if (busy) continue;
             const double arm_m = 120, here = ways_height(ways, ground, x, y);
             const double dx = ways_height(ways, ground, x + arm_m, y) - ways_height(ways, ground, x - arm_m, y);
@@ -97,6 +96,15 @@ static double other_road_m(const Ways *ways, const int *near, int count, int way
     return least;
 }
 
+/* Whether a vehicle was reported in a plot's house, with room for its own half length. */
+static bool vehicle_in_house(const Ways *ways, const HousePlot *p)
+{
+    static const double room_m = 4;
+    const double        x = p->x_m - ways->x0_m + p->house[0] * p->direction[0] - p->house[1] * p->direction[1];
+    const double        y = p->y_m - ways->y0_m + p->house[0] * p->direction[1] + p->house[1] * p->direction[0];
+    return ways_vehicle_near(ways, x, y, hypot(p->house_half[0], p->house_half[1]) + room_m);
+}
+
 /* Lays plots along both sides of the roads and lanes about a village. */
 static Status lay_plots(Ways *ways, const WaysGround *ground, const double centre[2], double radius_m)
 {
@@ -129,7 +137,7 @@ static Status lay_plots(Ways *ways, const WaysGround *ground, const double centr
             if (z < 0.12) continue; /* leaves a gap between plots */
             const double reach = hypot(p.half_along_m, p.half_across_m);
             if (other_road_m(ways, near, nears, s->way, x, y) < p.half_across_m + 6) continue;
-            if (ways_vehicle_near(ways, x, y, fmin(reach + 20, 95)) || stream_near(ways, x, y, reach + 8)) continue;
+            if (stream_near(ways, x, y, reach + 8)) continue;
             bool taken = false;
             for (int k = first_plot; k < ways->plots && !taken; k++)
                 taken = hypot(ways->plot[k].x_m - ways->x0_m - x, ways->plot[k].y_m - ways->y0_m - y) <
@@ -140,9 +148,10 @@ static Status lay_plots(Ways *ways, const WaysGround *ground, const double centr
             p.house_half[0] = 5 + 2.5 * v, p.house_half[1] = 4 + 1.5 * u;
             p.house[0] = (z - 0.5) * (p.half_along_m - p.house_half[0] - 2);
             p.house[1] = -sign * (p.half_across_m - p.house_half[1] - 4 - 4 * z);
+            next[side] = (double)s->along_m + 2 * p.half_along_m + 1;
+            if (vehicle_in_house(ways, &p)) continue;
             status = ways_reserve((void **)&ways->plot, &ways->plots_room, ways->plots + 1, sizeof *ways->plot);
             if (status == STATUS_OK) ways->plot[ways->plots++] = p;
-            next[side] = (double)s->along_m + 2 * p.half_along_m + 1;
         }
     }
     return status;
@@ -175,7 +184,7 @@ static Status lay_lanes(Ways *ways, const WaysGround *ground, const double centr
             const double c = cos(bend * 0.5), t = sin(bend * 0.5), turned = dx * c - dy * t;
             dy = dx * t + dy * c, dx = turned;
             x += dx * length_m / 5, y += dy * length_m / 5;
-            if (k > 0 && (stream_near(ways, x, y, 12) || ways_vehicle_near(ways, x, y, 30))) break;
+            if (k > 0 && stream_near(ways, x, y, 12)) break;
         }
         if (status != STATUS_OK || control.count < 3) continue;
         status = ways_draw_spline(&line, &control);

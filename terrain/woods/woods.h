@@ -2,8 +2,8 @@
  * (canopy height, canopy cover, crowns), of the tracks to be left clear, and of the seed.
  *
  * Trees, bushes and hedges are listed once; grass, reeds, crops and stones, which only matter near the eye, are handed
- * out square by square. None of them stand on roads, tracks, water, roofs or where a vehicle was reported, nor in or
- * beside what is built. */
+ * out square by square. None of them stand on roads, tracks, water or roofs, nor in or beside what is built, and no
+ * stem in a WoodsPath. */
 #ifndef TERRAIN_WOODS_WOODS_H
 #define TERRAIN_WOODS_WOODS_H
 

@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-static const double vehicle_m = 4, way_room_m = 1;
+static const double way_room_m = 1;
 
 /* ---- clearings -------------------------------------------------------------------------------- */
 
@@ -49,17 +49,12 @@ static void walk_squares(WoodsClearings *c, uint32_t *at, bool put)
 
 Status woods_clearings_create(WoodsClearings *out, const WoodsSource *s, const WoodsConfig *config)
 {
-    const LandscapeEvidence *known = &s->landscape->fitted_to;
-    const size_t             squares = (size_t)s->nx * (size_t)s->ny;
-    WoodsClearings           c = {.i0 = s->i0, .j0 = s->j0, .nx = s->nx, .ny = s->ny};
-    c.path = calloc((size_t)config->path_count + (size_t)known->fix_count + 1, sizeof *c.path);
+    const size_t   squares = (size_t)s->nx * (size_t)s->ny;
+    WoodsClearings c = {.i0 = s->i0, .j0 = s->j0, .nx = s->nx, .ny = s->ny};
+    c.path = calloc((size_t)config->path_count + 1, sizeof *c.path);
     c.first = calloc(squares + 2, sizeof *c.first);
     if (!c.path || !c.first) goto lost;
     for (int n = 0; n < config->path_count; n++) c.path[c.count++] = config->path[n];
-    for (int n = 0; n < known->fix_count; n++) {
-        const double *p = known->fix[n].p_enu;
-        c.path[c.count++] = (WoodsPath){{p[0], p[1]}, {p[0], p[1]}, vehicle_m, vehicle_m};
-    }
     /* counts at first[2 ..], then sums: while squares are filled, first[n + 1] is the next place of square n */
     walk_squares(&c, c.first + 2, false);
     for (size_t n = 1; n <= squares; n++) c.first[n + 1] += c.first[n];
@@ -80,6 +75,7 @@ bool woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double ro
     const size_t n = (size_t)j * (size_t)c->nx + (size_t)i;
     for (uint32_t k = c->first[n]; k < c->first[n + 1]; k++) {
         const WoodsPath *p = &c->path[c->item[k]];
+        if (low && !(p->low_half_m > 0)) continue;
         if (away_from(p, x_m, y_m) < (low ? p->low_half_m : p->half_m) + room_m) return true;
     }
     return false;

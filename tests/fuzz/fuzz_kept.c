@@ -72,14 +72,14 @@ static void fill_ground(InventedTerrain *t)
     elevation_build_pyramids(&t->elevation);
     t->ground.coast = (Coast){.sea_count = 1, .land_count = 2, .sea = calloc(1, 16), .land = calloc(2, 16)};
     w->side_m[0] = w->side_m[1] = w->index_m = w->coarse_m = 10;
-    w->nx = w->ny = w->segments = w->ponds = w->plots = w->clears = w->ways = w->villages = 1;
+    w->nx = w->ny = w->segments = w->ponds = w->plots = w->ways = w->villages = 1;
     w->cx = w->cy = 2;
     w->segment = calloc(1, sizeof *w->segment), w->pond = calloc(1, sizeof *w->pond);
-    w->plot = calloc(1, sizeof *w->plot), w->clear = calloc(1, sizeof *w->clear);
+    w->plot = calloc(1, sizeof *w->plot);
     w->start = calloc(2, sizeof *w->start), w->item = calloc(4, sizeof *w->item), w->wet = calloc(4, sizeof *w->wet);
     if (!w->start || !w->item) abort();
-    w->start[1] = 4;
-    for (uint32_t k = 0; k < 4; k++) w->item[k] = k << 28;
+    w->start[1] = WAY_ITEMS;
+    for (uint32_t k = 0; k < WAY_ITEMS; k++) w->item[k] = k << 28;
 }
 
 static void fill_patches(Patches *p)

@@ -70,7 +70,9 @@ static void invented_woods_are_clear_of_every_path(void **state)
     e->survey.shot_count = 1;
     plant(&woods, &land, &choices, e, &config);
     CHECK(woods.on && woods.woods.count > 100);
-    static const double half_m[] = {4, 4, 1.5, 8};
+    double half_m[4] = {0, 0, 0, 5}; /* half a vehicle's width, and no more; of a flight, a crown's */
+    for (int t = 0; t < 3; t++)
+        half_m[t] = 0.5 * catalog_model(catalog, catalog_find(catalog, e->track[t].type, NULL, NULL))->width_m;
     for (int t = 0; t < 4; t++) {
         const Track *track = &e->track[t];
         double       a[3], b[3];
@@ -81,12 +83,10 @@ static void invented_woods_are_clear_of_every_path(void **state)
         }
     }
     double p[3];
-    for (int n = 0; n < 12; n += 11) { /* where the tank begins and ends */
-        enu(p, &land, e->track[0].point[n].p_ecef);
-        CHECK(nearest_m(&woods.woods, p, p) >= 15 - 0.01);
-    }
     enu(p, &land, e->shot[0].p_burst_ecef);
-    CHECK(nearest_m(&woods.woods, p, p) >= 6 - 0.01);
+    CHECK(nearest_m(&woods.woods, p, p) >= 1 - 0.01);
+    for (int i = 0; i < woods.config.path_count; i++) /* grass and crops stay everywhere */
+        CHECK(woods.path[i].low_half_m == 0 && woods.path[i].half_m <= 6);
     CHECK(woods.entities == 3 && woods.in_trunks == 0);
     CHECK(says(&choices, "cleared along the paths of 3 entities on the ground, where 1 shot hit it"));
     CHECK(says(&choices, "woods: ") && says(&choices, "0.4 km about the aim (terrain.woods)"));

@@ -38,6 +38,8 @@ Status choice_host(HostPlan *out, Choices *choices, const Survey *survey, const 
 /* Takes a host given by name; 0:0:0 is the observer. STATUS_BAD_VALUE and a message when the log does not contain it.
  */
 Status choice_named_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
+/* Whether choice_named_host, or choice_host where host is NULL, has what it is asked for in this survey; says nothing. */
+bool choice_host_is_known(const Survey *survey, const Config *config, const DisEntityId *host);
 /* Puts the frames per second of exercise time into the plan. */
 void choice_rate(HostPlan *plan, Choices *choices, const Config *config);
 /* The entity nearest to a position at an instant, within 200 m, other than `not`; munitions do not count. 0:0:0: none.
@@ -106,9 +108,9 @@ Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *confi
 
 /* Where plants stand in a run: about what is on the ground, clear of what the exercise says.
  *
- * On invented ground no plant stands on the path of anything on the ground, where a burst hit it, or where a flight or
- * the line of sight of a shot that hit passes low, as far as these are known when the world is made. Real trees stay;
- * entities that begin within a trunk are counted. */
+ * On invented ground no stem stands within what drove on the ground, where a burst hit it, or where a flight or the
+ * line of sight of a shot that hit passes low, as far as the log tells that the world is made from; nothing else of the
+ * ground and its plants follows from a path. Real trees stay; entities that begin within a trunk are counted. */
 typedef struct WoodsChoice {
     bool        on; /* terrain.woods */
     WoodsConfig config;

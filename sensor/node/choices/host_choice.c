@@ -271,6 +271,21 @@ static Status span_of_munitions(HostPlan *plan, const Survey *survey, const Conf
     return STATUS_OK;
 }
 
+bool choice_host_is_known(const Survey *survey, const Config *config, const DisEntityId *host)
+{
+    DisEntityId aim, given;
+    bool        flies = false;
+    if (survey->track_count == 0) return false;
+    if (*config->exercise.aim && !(dis_entity_id_parse(&aim, config->exercise.aim) && survey_track(survey, aim)))
+        return false;
+    if (host) return dis_entity_id_is_none(*host) || survey_track(survey, *host);
+    if (!*config->exercise.host || strcmp(config->exercise.host, host_observer) == 0) return true;
+    if (strcmp(config->exercise.host, host_munition) != 0)
+        return dis_entity_id_parse(&given, config->exercise.host) && survey_track(survey, given);
+    for (int t = 0; t < survey->track_count; t++) flies |= may_fly(&survey->track[t]);
+    return flies;
+}
+
 static Status plan_munitions(HostPlan *out, Choices *choices, const Survey *survey, const Config *config)
 {
     HostPlan plan = {.any_munition = true, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};

@@ -100,7 +100,7 @@ typedef struct Paths {
     bool               no_memory;
 } Paths;
 
-static void add_path(Paths *p, const double a_m[2], const double b_m[2], double half_m, double low_half_m)
+static void add_path(Paths *p, const double a_m[2], const double b_m[2], double half_m)
 {
     /* plants stand in whole squares, which reach beyond */
     const double *c = p->square->centre_m,
@@ -119,22 +119,20 @@ static void add_path(Paths *p, const double a_m[2], const double b_m[2], double 
         p->path = larger;
         p->capacity = capacity;
     }
-    p->path[p->count++] = (WoodsPath){{a_m[0], a_m[1]}, {b_m[0], b_m[1]}, half_m, low_half_m};
+    p->path[p->count++] = (WoodsPath){{a_m[0], a_m[1]}, {b_m[0], b_m[1]}, half_m, 0};
 }
 
-/* Half the width that a vehicle needs to pass and to turn, with room for an error of the path between reports. */
-static double half_of(const Model *model, DisEntityType type)
-{
-    const double least_m = type.kind == dis_kind_platform ? 4 : 1.5;
-    return fmax(least_m, 0.5 * hypot(model->length_m, model->width_m) + 0.5);
-}
+/* No stem is within a vehicle that passes: half its width, with room for an error of the path between reports. What is
+ * cleared is no wider than that, and grass and crops stay: a path still to come must not show (test_no_prophecy.c). */
+static const double path_room_m = 0.25;
+static double       half_of(const Model *model) { return 0.5 * model->width_m + path_room_m; }
 
 /* From report to report on the ground. The pieces between are straight: a report in less than step_m of the last that
- * was taken is within its path. Reports that no drive joins are places. A platform begins and ends in the open. */
-static void add_track(Paths *p, const Track *track, const bool *fixed, double half_m)
+ * was taken is within its path. Reports that no drive joins are places; there, and at both ends, it is as long as wide. */
+static void add_track(Paths *p, const Track *track, const bool *fixed, const Model *model)
 {
-    static const double step_m = 1, jump_m = 500, open_m = 15;
-    const bool          opens = track->type.kind == dis_kind_platform;
+    const double half_m = half_of(model), round_m = 0.5 * hypot(model->length_m, model->width_m) + path_room_m;
+    static const double step_m = 1, jump_m = 500;
     double              last[3], here[3];
     bool                any = false;
     for (int n = 0; n < track->count; n++) {
@@ -143,10 +141,10 @@ static void add_track(Paths *p, const Track *track, const bool *fixed, double ha
             continue;
         }
         enu_of(here, p->landscape, track->point[n].p_ecef);
-        if (opens && (n == 0 || n == track->count - 1)) add_path(p, here, here, fmax(open_m, half_m), half_m);
         const double d_m = any ? hypot(here[0] - last[0], here[1] - last[1]) : INFINITY;
         if (any && d_m < step_m) continue;
-        add_path(p, any && d_m < jump_m ? last : here, here, half_m, half_m);
+        if (any && d_m < jump_m) add_path(p, last, here, half_m);
+        if (!any || !(d_m < jump_m) || n == track->count - 1) add_path(p, here, here, round_m);
         memcpy(last, here, sizeof last);
         any = true;
     }
@@ -156,7 +154,7 @@ static void add_track(Paths *p, const Track *track, const bool *fixed, double ha
  * stay. */
 static void add_line(Paths *p, const ClearLine *line)
 {
-    static const double tree_m = 35, half_m = 8 /* of a wide crown, about it */, step_m = 25;
+    static const double tree_m = 35, half_m = 5 /* of a crown, about it */, step_m = 25;
     const double *const a = line->a_enu, *const b = line->b_enu;
     const int pieces = 1 + (int)(hypot(b[0] - a[0], b[1] - a[1]) / step_m);
     double    from[3] = {0}, to[3] = {0};
@@ -167,7 +165,7 @@ static void add_line(Paths *p, const ClearLine *line)
         const bool below = at[2] - elevation_height(&p->landscape->elevation, at[0], at[1], NULL) < tree_m;
         if (below && !low) memcpy(from, at, sizeof from);
         if (below) memcpy(to, at, sizeof to);
-        if ((low && !below) || (below && k == pieces)) add_path(p, from, to, half_m, 0);
+        if ((low && !below) || (below && k == pieces)) add_path(p, from, to, half_m);
         low = below;
     }
 }
@@ -175,13 +173,13 @@ static void add_line(Paths *p, const ClearLine *line)
 /* Clears the paths of everything known to have been on the ground or low above it. */
 static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalog *catalog, const GroundEvidence *e)
 {
-    static const double crater_m = 6;
+    static const double burst_m = 1; /* it fell between the stems; what it tears down is not cleared before */
     for (int t = 0; t < survey->track_count && !p->no_memory; t++) {
         const Track *track = &survey->track[t];
         const Model *model = catalog_model(catalog, catalog_find(catalog, track->type, NULL, NULL));
         const bool  *fixed = e->fixed + e->first[t];
         if (e->stance[t] == STANCE_GROUND || e->stance[t] == STANCE_LANDED)
-            add_track(p, track, fixed, half_of(model, track->type));
+            add_track(p, track, fixed, model);
     }
     for (int i = 0; i < e->said.line_count && !p->no_memory; i++) add_line(p, &e->said.line[i]);
     for (int i = 0; i < survey->shot_count; i++) {
@@ -189,7 +187,7 @@ static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalo
         double      p_enu[3];
         if (shot->result != dis_result_ground_impact || !isfinite(shot->detonation_s)) continue;
         enu_of(p_enu, p->landscape, shot->p_burst_ecef);
-        add_path(p, p_enu, p_enu, crater_m, crater_m);
+        add_path(p, p_enu, p_enu, burst_m);
         ++*impacts;
     }
 }

@@ -325,13 +325,19 @@ double player_listens_until_s(const DisDatagram *starts, const Config *config)
 
 bool player_opening(DisLog *view, DisLog *heard, double *until_s, const DisLog *log, const Config *config)
 {
+    *until_s = NAN;
+    return player_opening_until(view, heard, until_s, log, config);
+}
+
+bool player_opening_until(DisLog *view, DisLog *heard, double *until_s, const DisLog *log, const Config *config)
+{
     int starts = 0, end;
     for (; starts < log->count; starts++) {
         const DisDatagram datagram = dis_log_datagram(log, starts);
         if (player_starts(NULL, &datagram, config)) break;
     }
     if (starts == log->count) return false;
-    *until_s = player_listens_until_s(&log->datagram[starts], config);
+    if (isnan(*until_s)) *until_s = player_listens_until_s(&log->datagram[starts], config);
     for (end = starts; end < log->count && log->datagram[end].capture_s <= *until_s;) end++;
     const int begin = starts > player_opening_before ? starts - player_opening_before : 0;
     *view = *log;

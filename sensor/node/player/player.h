@@ -77,5 +77,7 @@ double player_listens_until_s(const DisDatagram *starts, const Config *config);
 /* Applies the rule to a complete log. view: the log from the beginning of the exercise; heard: those of its datagrams
  * that were received in time for the choices. Both borrow from the log. False: no datagram starts the exercise. */
 bool player_opening(DisLog *view, DisLog *heard, double *until_s, const DisLog *log, const Config *config);
+/* The same of another node's listening, until *until_s; NaN: as above. */
+bool player_opening_until(DisLog *view, DisLog *heard, double *until_s, const DisLog *log, const Config *config);
 
 #endif

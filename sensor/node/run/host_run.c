@@ -90,7 +90,7 @@ Status run_made(Run *run)
     return made_world_create(&run->made);
 }
 
-Status run_survey(Run *run, const DisLog *heard)
+Status run_survey(Run *run, const DisLog *heard, const DisLog *from)
 {
     const Options *o = &run->options;
     char           path[path_size];
@@ -99,6 +99,7 @@ Status run_survey(Run *run, const DisLog *heard)
     run->exercise = choice_exercise(&run->choices, heard, &o->config);
     log_detail("%s: %d threads, %s, config_sha256 %s", options_command(o), o->threads, o->isa, run->config_sha256);
     status = made_survey(run->made, heard, run->exercise);
+    if (status == STATUS_OK) status = made_basis(run->made, from, heard, run->exercise);
     if (status != STATUS_OK) return status;
     const DisCounters *counters = &run->made->survey.counters;
     for (int i = 0; i < DIS_DROP_COUNT; i++)
@@ -215,10 +216,9 @@ static void report_fixed_air(Choices *choices, const Config *config, const World
                    model, 1e3 * own_kg_m3, 1e3 * set_kg_m3);
 }
 
-static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEntityId *host)
+static Status choose_who(HostPlan *plan, Choices *choices, const Survey *survey, const Config *config,
+                         const DisEntityId *host)
 {
-    const Config *config = &run->options.config;
-    const Survey *survey = &run->made->survey;
     return host ? choice_named_host(plan, choices, survey, config, *host) : choice_host(plan, choices, survey, config);
 }
 
@@ -242,7 +242,7 @@ Status run_check(Run *run, const DisEntityId *host)
     Choices *choices = malloc(sizeof *choices); /* made again by run_host, in its order */
     if (!choices) return STATUS_NO_MEMORY;
     *choices = run->choices;
-    Status status = choose_who(&plan, choices, run, host);
+    Status status = choose_who(&plan, choices, &run->made->survey, &run->options.config, host);
     if (status == STATUS_OK) status = player_create(&player, run->exercise, run->options.config.exercise.causal);
     if (status == STATUS_OK && run->options.config.exercise.causal) status = player_add_log(player, &run->view);
     if (status == STATUS_OK) {
@@ -263,6 +263,58 @@ typedef struct HostChoice {
     Choices  choices; /* the lines of all hosts, and of this one */
 } HostChoice;
 
+/* The plan whose world it is: of a causal replay, that of a replay which knows the whole recording, whose ground is its
+ * own too; nothing is said of it. */
+static Status plan_of_world(HostPlan *out, const Run *run, const HostPlan *plan, const DisEntityId *host)
+{
+    const Survey *basis = made_basis_survey(run->made);
+    *out = *plan;
+    if (run->live || run->noted || !run->options.config.exercise.causal ||
+        !choice_host_is_known(basis, &run->options.config, host))
+        return STATUS_OK;
+    Config  *whole = malloc(sizeof *whole);
+    Choices *unsaid = calloc(1, sizeof *unsaid);
+    Status   status = whole && unsaid ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        *whole = run->options.config;
+        whole->exercise.causal = false;
+        status = choose_who(out, unsaid, basis, whole, host);
+    }
+    free(whole), free(unsaid);
+    return status;
+}
+
+/* Where the world lies, and the square in which its plants stand: as noted, or by its plan. */
+static Status place_world(LocalFrame *frame, WoodsSquare *square, Choices *choices, const Run *run,
+                          const HostPlan *plan, const DisEntityId *host)
+{
+    const Config      *config = &run->options.config;
+    const Survey      *basis = made_basis_survey(run->made);
+    const WoodsSquare *was = &run->world_note.square;
+    HostPlan           of;
+    Status             status = plan_of_world(&of, run, plan, host);
+    if (status == STATUS_OK)
+        status = run->noted ? local_frame_at(frame, &run->world_note.origin) : choice_frame(frame, basis, &of);
+    if (status == STATUS_OK && *config->terrain.store) {
+        double p_ecef[3];
+        if (!choice_aim_place(p_ecef, basis, &of)) memcpy(p_ecef, frame->origin_ecef, sizeof p_ecef);
+        status = choice_store_frame(frame, choices, config, p_ecef);
+    }
+    if (status == STATUS_OK) status = choice_square(square, basis, config, frame, &of);
+    const bool same = run->noted && was->own == square->own;
+    if (status == STATUS_OK && same && (!was->own || was->half_width_m == square->half_width_m)) *square = *was;
+    return status;
+}
+
+/* Notes in the recording of a live node what its world was made from. */
+static void note_world(const Run *run, const LocalFrame *frame, const WoodsSquare *square)
+{
+    char text[world_note_size];
+    if (!run->note) return;
+    world_note_text(text, &(WorldNote){run->until_s, frame->origin, *square});
+    run->note(run->user, text);
+}
+
 /* Makes the choices and the world, and prints their messages. */
 static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
 {
@@ -271,17 +323,15 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
     HostPlan      *plan = &out->plan;
     Choices       *choices = &out->choices;
     LocalFrame     frame;
-    Status         status = choose_who(plan, choices, run, host);
-    if (status == STATUS_OK) status = choice_frame(&frame, &made->survey, plan);
-    if (status == STATUS_OK && *o->config.terrain.store) {
-        double p_ecef[3];
-        if (!choice_aim_place(p_ecef, &made->survey, plan)) memcpy(p_ecef, frame.origin_ecef, sizeof p_ecef);
-        status = choice_store_frame(&frame, choices, &o->config, p_ecef);
-    }
+    WoodsSquare    square;
+    Status         status = choose_who(plan, choices, &made->survey, &o->config, host);
+    if (status == STATUS_OK) status = place_world(&frame, &square, choices, run, plan, host);
     if (status == STATUS_OK) status = choice_time(&out->unix_s, choices, &made->survey, &o->config, &frame);
     if (status == STATUS_OK)
-        status = made_world(made, choices, &(MadeOf){&o->config, &run->tables, plan, &frame, out->unix_s, o->isa});
+        status = made_world(made, choices,
+                            &(MadeOf){&o->config, &run->tables, plan, &frame, &square, out->unix_s, o->isa});
     if (status != STATUS_OK) return status;
+    note_world(run, &frame, &square);
     report_visibility(choices, &o->config, made->world.atmosphere);
     report_fixed_air(choices, &o->config, &made->world, out->unix_s);
     report_air_temp(choices, &o->config, made->world.atmosphere,

@@ -6,6 +6,7 @@
 #include "dis/network/udp.h"
 #include "sensor/node/clock/frame_clock.h"
 #include "sensor/node/run/made_world.h"
+#include "sensor/node/run/world_note.h"
 #include "sensor/node/session/session.h"
 #include "sensor/settings/options.h"
 #include "sensor/settings/tables_used.h"
@@ -15,6 +16,8 @@ struct Run {
     Options               options;
     DisLog                view;     /* the log to play; borrowed */
     double                until_s;  /* causal: arrival time of the last datagram used by the choices */
+    bool                  noted;    /* the recording says what its world was made from: world_note */
+    WorldNote             world_note;
     bool                  stopped;  /* by a signal, before the last frame */
     uint64_t              own;      /* datagrams of this node, ignored */
     const DisLogCounters *link;     /* NULL: live */
@@ -48,8 +51,9 @@ Status run_measure_machine(Run *run);
 Status run_prepare(Run *run);
 /* Makes run->made, where the caller gave none. */
 Status run_made(Run *run);
-/* Finds exercise and survey from the received datagrams, and opens catalog and pool. */
-Status run_survey(Run *run, const DisLog *heard);
+/* Finds exercise and survey from the received datagrams, and opens catalog and pool. from: what the world follows
+ * from (made_basis). */
+Status run_survey(Run *run, const DisLog *heard, const DisLog *from);
 /* Host, aim and span of a host as run_host has them: what is wrong with them is logged, in a second. */
 Status run_check(Run *run, const DisEntityId *host);
 /* Runs one host, with its own ground and frame, and its own folder when there are several. host NULL: the configured or

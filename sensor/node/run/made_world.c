@@ -42,10 +42,14 @@ static void take_down(MadeWorld *m, MadeLayer layer)
     case MADE_LOG:
         dis_log_close(&m->log);
         m->log = (DisLog){0};
+        free(m->retimed);
+        m->retimed = NULL;
         break;
     case MADE_SURVEY:
         survey_destroy(&m->survey);
-        m->survey = (Survey){0};
+        survey_destroy(&m->basis);
+        m->survey = m->basis = (Survey){0};
+        m->has_basis = false;
         break;
     case MADE_CATALOG:
         catalog_close(m->catalog);
@@ -180,13 +184,31 @@ static void add_own(Key *key, const Config *config)
 
 static void hash_octets(void *user, const void *octets, size_t count) { add(user, octets, count); }
 
-/* Takes arrival times as a live node received them, independent of the time stamps. */
-static void take_packet_times(DisLog *log)
+/* A causal replay takes arrival times as a live node received them, independent of the time stamps. What its world
+ * follows from may have the others. */
+static Status take_times(MadeWorld *m, bool causal)
 {
-    if (log->retimed)
+    DisLog *log = &m->log;
+    if (!log->retimed) {
+        for (int i = 0; causal && i < log->count; i++) log->datagram[i].capture_s = log->datagram[i].packet_s;
+        return STATUS_OK;
+    }
+    m->retimed = malloc(((size_t)log->count + 1) * sizeof *m->retimed);
+    if (!m->retimed) return STATUS_NO_MEMORY;
+    memcpy(m->retimed, log->datagram, (size_t)log->count * sizeof *m->retimed);
+    DisDatagram *by_packets = causal ? log->datagram : m->retimed;
+    for (int i = 0; i < log->count; i++) by_packets[i].capture_s = by_packets[i].packet_s;
+    if (causal)
         log_warn("replay: the packet times do not keep pace with the time stamps; --causal takes them as they are");
-    for (int i = 0; i < log->count; i++) log->datagram[i].capture_s = log->datagram[i].packet_s;
-    log->retimed = false;
+    log->retimed = !causal;
+    return STATUS_OK;
+}
+
+DisLog made_log_by(const MadeWorld *m, const Config *config, bool packet_times)
+{
+    DisLog log = m->log;
+    if (m->retimed && packet_times != config->exercise.causal) log.datagram = m->retimed, log.retimed = !packet_times;
+    return log;
 }
 
 static Status open_log(MadeWorld *m, const char *path, const Config *config)
@@ -199,9 +221,8 @@ static Status open_log(MadeWorld *m, const char *path, const Config *config)
         if (status == STATUS_OK) status = ended;
     }
     if (status != STATUS_OK) return status;
-    if (config->exercise.causal) take_packet_times(&m->log);
     m->own = (uint64_t)player_drop_own(&m->log, config);
-    return STATUS_OK;
+    return take_times(m, config->exercise.causal);
 }
 
 Status made_log(MadeWorld *m, const char *path, const Config *config)
@@ -233,6 +254,18 @@ Status made_survey(MadeWorld *m, const DisLog *heard, int exercise)
     if (is_there(key_text, m, MADE_SURVEY, &key)) return STATUS_OK;
     return done(m, MADE_SURVEY, key_text, survey_log(&m->survey, heard, exercise));
 }
+
+Status made_basis(MadeWorld *m, const DisLog *from, const DisLog *heard, int exercise)
+{
+    if (m->has_basis) survey_destroy(&m->basis);
+    m->has_basis = false;
+    if (from->datagram == heard->datagram && from->count == heard->count) return STATUS_OK;
+    const Status status = survey_log(&m->basis, from, exercise);
+    m->has_basis = status == STATUS_OK;
+    return status;
+}
+
+const Survey *made_basis_survey(const MadeWorld *m) { return m->has_basis ? &m->basis : &m->survey; }
 
 Status made_catalog(MadeWorld *m, const Config *config, const TablesUsed *tables)
 {
@@ -281,7 +314,7 @@ static Status need_ground(MadeWorld *m, const MadeOf *of, const GroundEvidence *
     add_frame(&key, of->frame);
     key.good = key.good && *m->key[MADE_CATALOG] && choice_evidence_hash(key.digest, evidence);
     if (is_there(key_text, m, MADE_GROUND, &key)) return STATUS_OK;
-    const ChoiceBasis basis = {&m->survey, part, m->catalog, evidence, m->cache, NULL};
+    const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, evidence, m->cache, NULL};
     return done(m, MADE_GROUND, key_text,
                 choice_ground(&m->landscape, &m->contact, &m->said[MADE_GROUND], &basis, of->frame));
 }
@@ -293,26 +326,26 @@ static void add_square(Key *key, const WoodsSquare *square)
     add(key, &square->own, sizeof square->own);
 }
 
-static Status need_culture(MadeWorld *m, const MadeOf *of, const WoodsSquare *square)
+static Status need_culture(MadeWorld *m, const MadeOf *of)
 {
     char    key_text[sha256_text_size];
     Config *part = &m->part[MADE_CULTURE];
     Key     key = key_of(part, MADE_CULTURE, of->config);
-    add_square(&key, square);
+    add_square(&key, of->square);
     key.good = key.good && *m->key[MADE_GROUND];
     if (is_there(key_text, m, MADE_CULTURE, &key)) return STATUS_OK;
-    const ChoiceBasis basis = {&m->survey, part, m->catalog, NULL, m->cache, NULL};
-    const Status      status = choice_scenery(&m->scenery, &m->said[MADE_CULTURE], &basis, square, &m->landscape);
+    const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, NULL, m->cache, NULL};
+    const Status      status = choice_scenery(&m->scenery, &m->said[MADE_CULTURE], &basis, of->square, &m->landscape);
     if (status == STATUS_OK && m->scenery.culture.index) culture_lay(&m->landscape, &m->scenery.culture);
     return done(m, MADE_CULTURE, key_text, status);
 }
 
-static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *evidence, const WoodsSquare *square)
+static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *evidence)
 {
     char    key_text[sha256_text_size];
     Config *part = &m->part[MADE_WOODS];
     Key     key = key_of(part, MADE_WOODS, of->config);
-    add_square(&key, square);
+    add_square(&key, of->square);
     key.good = key.good && *m->key[MADE_CULTURE] && choice_evidence_hash(key.digest, evidence);
     if (is_there(key_text, m, MADE_WOODS, &key)) return STATUS_OK;
     char follows[4 * sha256_text_size]; /* settings, tables, frame and evidence by content; paths of vehicles are in
@@ -320,9 +353,9 @@ static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *e
     snprintf(follows, sizeof follows, "%s%s%s%s", m->key[MADE_CATALOG], m->key[MADE_GROUND],
              m->scenery.culture.index ? m->key[MADE_CULTURE] : "", key_text);
     const bool        known = *m->key[MADE_CATALOG] && *m->key[MADE_CULTURE] && *key_text;
-    const ChoiceBasis basis = {&m->survey, part, m->catalog, evidence, m->cache, known ? follows : NULL};
+    const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, evidence, m->cache, known ? follows : NULL};
     return done(m, MADE_WOODS, key_text,
-                choice_woods(&m->woods, &m->said[MADE_WOODS], &basis, square, &m->landscape, &m->scenery.culture, m->pool));
+                choice_woods(&m->woods, &m->said[MADE_WOODS], &basis, of->square, &m->landscape, &m->scenery.culture, m->pool));
 }
 
 static Status need_models(MadeWorld *m, const MadeOf *of)
@@ -377,16 +410,14 @@ static Status need_warmth(MadeWorld *m, const MadeOf *of)
 Status made_world(MadeWorld *m, Choices *choices, const MadeOf *of)
 {
     GroundEvidence *evidence = NULL;
-    WoodsSquare     square;
-    Status          status = choice_evidence(&evidence, &m->survey, m->catalog, of->frame);
+    Status          status = choice_evidence(&evidence, made_basis_survey(m), m->catalog, of->frame);
     if (status == STATUS_OK) status = need_ground(m, of, evidence);
     if (status == STATUS_OK) {
         say(choices, &m->said[MADE_GROUND]);
-        choice_report_submerged(choices, &m->survey, evidence, of->plan);
-        status = choice_square(&square, &m->survey, of->config, of->frame, of->plan);
+        choice_report_submerged(choices, made_basis_survey(m), evidence, of->plan);
     }
-    if (status == STATUS_OK) status = need_culture(m, of, &square);
-    if (status == STATUS_OK) status = need_woods(m, of, evidence, &square);
+    if (status == STATUS_OK) status = need_culture(m, of);
+    if (status == STATUS_OK) status = need_woods(m, of, evidence);
     choice_evidence_free(evidence);
     if (status != STATUS_OK) return status;
     say(choices, &m->said[MADE_CULTURE]);

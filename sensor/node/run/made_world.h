@@ -33,7 +33,10 @@ typedef struct MadeWorld {
     DisLog        log;
     char          log_sha256[sha256_text_size];
     uint64_t      own; /* datagrams of this node, which are not in the log */
-    Survey        survey;
+    Survey        survey; /* what hosts and aims are chosen by */
+    Survey        basis;  /* what the world follows from, where it is another: made_basis */
+    bool          has_basis;
+    DisDatagram  *retimed; /* the log's datagrams by the other of packet times and times by stamps; NULL: they are one */
     Catalog      *catalog;
     Landscape     landscape;
     GroundContact contact;
@@ -54,6 +57,12 @@ void   made_world_destroy(MadeWorld *made); /* accepts NULL */
 Status made_log(MadeWorld *made, const char *path, const Config *config);
 /* heard: what the choices are made by. Kept where it is all of made->log, of the same exercise. */
 Status made_survey(MadeWorld *made, const DisLog *heard, int exercise);
+/* What ground, plants and roads follow from: all of a recording, causal or not, or what a live node had heard when it
+ * made them. heard: what the survey is of, which is taken where `from` is the same. */
+Status        made_basis(MadeWorld *made, const DisLog *from, const DisLog *heard, int exercise);
+/* The log by packet times, or by times that keep pace with its stamps, whatever a replay takes. */
+DisLog        made_log_by(const MadeWorld *made, const Config *config, bool packet_times);
+const Survey *made_basis_survey(const MadeWorld *made);
 Status made_catalog(MadeWorld *made, const Config *config, const TablesUsed *tables);
 Status made_pool(MadeWorld *made, int threads);
 /* Opens the cache of the disk, unless it is open or cache.on is off. A failure is logged, and costs time alone. */
@@ -65,6 +74,7 @@ typedef struct MadeOf {
     const TablesUsed *tables;
     const HostPlan   *plan;
     const LocalFrame *frame;
+    const WoodsSquare *square;
     double            unix_s; /* of exercise time 0 */
     const char       *isa;
 } MadeOf;
