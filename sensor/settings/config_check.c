@@ -6,6 +6,7 @@
 #include "dis/capture/recorder.h"
 #include "pitviper_channels.h"
 #include "sensor/settings/publish_choice.h"
+#include "terrain/ground/placed.h"
 
 /* ---- bands: with further channels chosen in their places ------------------------------------------ */
 
@@ -173,7 +174,8 @@ static bool store_alone(const Config *config)
     } other[] = {{"elevation", *config->terrain.elevation},
                  {"cover", *config->terrain.cover},
                  {"orthophoto", *config->terrain.orthophoto},
-                 {"spacing_m", config->terrain.spacing_m > 0}};
+                 {"spacing_m", config->terrain.spacing_m > 0},
+                 {"place", *config->terrain.place}};
     if (!*config->terrain.store) return true;
     for (size_t k = 0; k < sizeof other / sizeof *other; k++)
         if (other[k].set) {
@@ -229,10 +231,31 @@ static bool detector_good(const Config *config)
     return good;
 }
 
+/* Checks the place of ground that follows no exercise. */
+static bool place_good(const Config *config)
+{
+    Geodetic    place;
+    const char *text = config->terrain.place, *where = config_where(config, "terrain.place");
+    if (!*text) return true;
+    if (!landscape_place_parse(&place, text)) {
+        log_error("config: %sterrain.place: '%s' is not latitude, longitude and height: -90 .. 90 and -180 .. 180 deg, "
+                  "-500 .. 9000 m, for example 50.1,8.6,120",
+                  where, text);
+        return false;
+    }
+    if (*config->terrain.elevation || config->terrain.ground == TERRAIN_GROUND_FIT) {
+        log_error("config: %sterrain.place: this ground follows from seed and place alone; leave terrain.%s out, or "
+                  "terrain.place",
+                  where, *config->terrain.elevation ? "elevation" : "ground: fit");
+        return false;
+    }
+    return true;
+}
+
 /* Checks which keys of terrain exclude and which need one another. */
 static bool terrain_good(const Config *config)
 {
-    bool good = store_alone(config);
+    bool good = store_alone(config) && place_good(config);
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&
         !(config->terrain.spacing_m >= 1 && config->terrain.spacing_m <= 30)) {
         log_error("config: %sterrain.spacing_m: %g is not 0 or 1 .. 30 m for synthetic terrain",

@@ -272,7 +272,7 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
     Choices       *choices = &out->choices;
     LocalFrame     frame;
     Status         status = choose_who(plan, choices, run, host);
-    if (status == STATUS_OK) status = choice_frame(&frame, &made->survey, plan);
+    if (status == STATUS_OK) status = choice_world_frame(&frame, &made->survey, &o->config, plan);
     if (status == STATUS_OK && *o->config.terrain.store) {
         double p_ecef[3];
         if (!choice_aim_place(p_ecef, &made->survey, plan)) memcpy(p_ecef, frame.origin_ecef, sizeof p_ecef);
