@@ -393,6 +393,39 @@ Status scenario_set_group(Scenario *scenario, const char *name, const char *key,
     return STATUS_BAD_VALUE;
 }
 
+/* vehicles.NAME.key, whose name may hold dots. False: it is of no group. */
+static bool split_group_key(char name[scenario_name_size], const char **key, const char *text)
+{
+    static const char of_groups[] = "vehicles.";
+    const char       *dot = strrchr(text, '.'), *from = text + sizeof of_groups - 1;
+    if (strncmp(text, of_groups, sizeof of_groups - 1) != 0 || dot <= from || dot - from >= scenario_name_size)
+        return false;
+    memcpy(name, from, (size_t)(dot - from));
+    name[dot - from] = 0;
+    *key = dot + 1;
+    return true;
+}
+
+Status scenario_set_any(Scenario *scenario, const char *key, const char *value, const char *source)
+{
+    char        name[scenario_name_size];
+    const char *of_group;
+    return split_group_key(name, &of_group, key) ? scenario_set_group(scenario, name, of_group, value, source)
+                                                 : scenario_set(scenario, key, value, source);
+}
+
+bool scenario_key_type(SettingType *out, const char *key)
+{
+    char                name[scenario_name_size];
+    const char         *of_group;
+    const bool          group = split_group_key(name, &of_group, key);
+    const SettingTable *of = group ? &group_table : &table;
+    const int           row = settings_find(of, group ? of_group : key);
+    if (row < 0) return false;
+    *out = of->row[row].type;
+    return true;
+}
+
 void scenario_destroy(Scenario *scenario)
 {
     free(scenario->group);

@@ -211,6 +211,11 @@ Status scenario_set(Scenario *scenario, const char *key, const char *value, cons
 /* A key of an item of vehicles, by the item's name: of all items of that name. STATUS_BAD_VALUE, logged: there is none,
  * or as scenario_set. `net` is a key of the file alone. */
 Status scenario_set_group(Scenario *scenario, const char *name, const char *key, const char *value, const char *source);
+/* A key as a command line or an axis of a sweep gives it: `seed`, `dis.version`, or `vehicles.NAME.key` of all
+ * vehicles of that name. */
+Status scenario_set_any(Scenario *scenario, const char *key, const char *value, const char *source);
+/* Of which type such a key is; false: there is none. */
+bool scenario_key_type(SettingType *out, const char *key);
 /* Repeats the checks across keys, after scenario_set. */
 Status scenario_check(const Scenario *scenario);
 void   scenario_destroy(Scenario *scenario); /* accepts zeroes */

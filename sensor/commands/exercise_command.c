@@ -59,7 +59,7 @@ static const char help[] =
     "scenario\n"
     "  --set KEY=VALUE      one key of the scenario, such as dis.version=6, dis.bundle=true, place.lat_deg=44 or "
     "seed=7;\n"
-    "                       may be repeated\n"
+    "                       may be repeated; vehicles.NAME.KEY=VALUE is of all vehicles of that name\n"
     "  --keys               print every key of a scenario, with its range and default\n"
     "with --send\n"
     "  --interface NAME     send from this network interface, such as eth0\n"
@@ -218,7 +218,7 @@ static int parse(Options *o, int argc, char **argv)
 
 static bool apply_set(Scenario *scenario, const char *text)
 {
-    char        key[64];
+    char        key[96];
     const char *equals = strchr(text, '=');
     if (!equals || equals - text >= (long)sizeof key) {
         log_error("exercise: --set: '%s' is not KEY=VALUE, for example dis.version=6", text);
@@ -226,7 +226,7 @@ static bool apply_set(Scenario *scenario, const char *text)
     }
     memcpy(key, text, (size_t)(equals - text));
     key[equals - text] = 0;
-    return scenario_set(scenario, key, equals + 1, "--set") == STATUS_OK;
+    return scenario_set_any(scenario, key, equals + 1, "--set") == STATUS_OK;
 }
 
 static bool is_file(const char *path)

@@ -5,6 +5,7 @@
 #include "dis/pdu/pdu.h"
 #include "dis/capture/recorder.h"
 #include "pitviper_channels.h"
+#include "sensor/settings/aim_offset.h"
 #include "sensor/settings/publish_choice.h"
 #include "terrain/ground/placed.h"
 
@@ -302,10 +303,17 @@ static bool products_good(const Config *config)
     return good;
 }
 
-/* Checks heat.facets, weather.day and sensor.mount. */
+/* Checks heat.facets, weather.day, sensor.mount and sensor.aim_offset. */
 static bool scene_good(const Config *config)
 {
-    bool good = true;
+    AimOffset offset;
+    bool      good = true;
+    if (!aim_offset_parse(&offset, config->sensor.aim_offset)) {
+        log_error("config: %ssensor.aim_offset: '%s' is not none, drawn, drawn W,H with shares in 0 .. 1, X,Y with shares "
+                  "in -0.5 .. 0.5, or X,Y deg with -60 .. 60",
+                  config_where(config, "sensor.aim_offset"), config->sensor.aim_offset);
+        good = false;
+    }
     if (config->heat.facets % 2 == 0) {
         log_error("config: %sheat.facets: %d is even; odd, 3 .. 17, so that one of them is level",
                   config_where(config, "heat.facets"), config->heat.facets);

@@ -40,6 +40,12 @@ enum { config_paths_size = 4096 };
     ROW(DOUBLE, sensor., gimbal_limit_deg, 45, 0, 180, "deg", "largest angle off the body axis") \
     ROW(DOUBLE, sensor., gimbal_rate_dps, 60, 0.01, 10000, "deg/s", "largest slew rate") \
     ROW(DOUBLE, sensor., gimbal_lag_s, 0.03, 0, 10, "s", "time constant of the tracking loop") \
+    ROW(TEXT, sensor., aim_offset, "none", 40, "", \
+        "where in the image the aim is: none, in the middle; drawn, by the seed for each host over four fifths of its " \
+        "width and height; drawn W,H: over these shares; X,Y: shares right of the middle and below, -0.5 .. 0.5; X,Y deg") \
+    ROW(DOUBLE, sensor., walk_deg, 0, 0, 20, "deg", \
+        "rms of a slow walk of the line of sight about its aim, in each axis: hand-over errors, drift of a gimbal") \
+    ROW(DOUBLE, sensor., walk_s, 10, 0.01, 1e5, "s", "time over which its correlation falls to 1/e") \
     ROW(TEXT, sensor., mount, "auto", 48, "", \
         "what the sensor is mounted on: auto (nose or roof), or a part of the host: primary turret, primary gun " \
         "2, the name of a node") \
