@@ -117,9 +117,16 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s)
     const double         way_m = way_of(&speed_mps, cast, e, t_s) - (double)e->behind_m;
 
     route_at(&at, route, way_m);
-    const double along = hypot(at.d[0], at.d[1]), forward[2] = {at.d[0] / along, at.d[1] / along};
-    const double left[3] = {-forward[1], forward[0], 0};
-    const double x = at.p[0] + e->aside_m * left[0], y = at.p[1] + e->aside_m * left[1];
+    const double along = hypot(at.d[0], at.d[1]);
+    double       forward[2] = {at.d[0] / along, at.d[1] / along};
+    double       left[3] = {-forward[1], forward[0], 0};
+    double       x = at.p[0] + e->aside_m * left[0], y = at.p[1] + e->aside_m * left[1];
+    if (e->own >= 0) {
+        const CastHidden *own = &cast->hidden[e->own];
+        x = own->x_m, y = own->y_m;
+        forward[0] = sin(own->heading_rad), forward[1] = cos(own->heading_rad);
+        left[0] = -forward[1], left[1] = forward[0];
+    }
     const bool   stands = g->route_m.count == 2;
     if (stands) speed_mps = 0; /* a stationary entity's route only gives its heading */
     else curvature = (at.d[0] * at.dd[1] - at.d[1] * at.dd[0]) / (along * along * along);
@@ -202,7 +209,7 @@ uint32_t cast_appearance(const Cast *cast, int entity, double t_s)
         if (e->damage == 2) bits |= 1u << dis_appearance_smoke_shift;
     }
     if (e->carriage == CARRIAGE_LIFE) return bits;
-    if (g->engine) bits |= engine;
+    if (g->engine && !(t_s >= g->engine_off_s)) bits |= engine;
     if (e->carriage == CARRIAGE_LAND) {
         double speed_mps;
         way_of(&speed_mps, cast, e, t_s);
@@ -256,7 +263,7 @@ bool cast_still(const Cast *cast, int entity, double t_s)
 double cast_next_change(const Cast *cast, int entity, double t_s)
 {
     const CastEntity *e = &cast->entity[entity];
-    double            times[6] = {e->hit_s, e->rest_s, NAN, NAN, NAN, NAN}, next = INFINITY;
+    double            times[7] = {e->hit_s, e->rest_s, NAN, NAN, NAN, NAN, NAN}, next = INFINITY;
     if (e->group < 0) {
         const CastRound *round = &cast->round[e->round];
         times[2] = round->fire_s, times[3] = round->fire_s + flash_s;
@@ -265,9 +272,9 @@ double cast_next_change(const Cast *cast, int entity, double t_s)
         const ScenarioGroup *g = &cast->scenario->group[e->group];
         const double         bent_s = g->speed_mps > 0 ? g->unsteady_m / g->speed_mps + 0.02 : 0;
         times[2] = g->appears_s, times[3] = g->leaves_s, times[4] = g->start_s - bent_s;
-        times[5] = cast->stop_s[e->group] - bent_s;
+        times[5] = cast->stop_s[e->group] - bent_s, times[6] = g->engine_off_s;
     }
-    for (int i = 0; i < 6; i++)
+    for (int i = 0; i < 7; i++)
         if (times[i] > t_s) next = fmin(next, times[i]);
     return next;
 }

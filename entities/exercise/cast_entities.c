@@ -4,7 +4,6 @@
 
 #include "dis/pdu/pdu.h"
 #include "pitviper_table.h"
-#include "entities/catalog/catalog.h"
 
 #include <stdlib.h>
 
@@ -144,7 +143,8 @@ static Status make_route(Cast *cast, int group, bool flies)
         point[i][2] = flies ? exercise_ground_at(NULL, &cast->ground, point[i][0], point[i][1]) + g->height_m : 0;
     }
     if (count == 1) { /* stationary: a metre of route gives its heading */
-        const double heading_rad = (g->heading_deg + s->place.turn_deg) * rad_per_deg;
+        const double heading_rad =
+            ((isnan(g->heading_deg) ? 0 : g->heading_deg) + s->place.turn_deg) * rad_per_deg;
         memcpy(point[1], point[0], sizeof point[1]);
         point[1][0] += sin(heading_rad);
         point[1][1] += cos(heading_rad);
@@ -168,6 +168,21 @@ static double stop_time(const Cast *cast, int group, Carriage carriage)
 
 /* ---- all entities ----------------------------------------------------------------------------- */
 
+/* Nets are in the formation of what they cover. */
+static Status cast_nets(Cast *cast, const ScenarioGroup *g, int first, int first_id, const CastEntity *like, int size)
+{
+    int under = 0;
+    for (int k = 0; k < g->over - 1; k++) under += scenario_group_size(cast->scenario, &cast->scenario->group[k]);
+    for (int k = 0; k < size; k++) {
+        CastEntity e = *like;
+        e.number = (uint16_t)(first_id + k);
+        e.behind_m = cast->entity[under + k].behind_m;
+        e.aside_m = cast->entity[under + k].aside_m;
+        cast->entity[first + k] = e;
+    }
+    return STATUS_OK;
+}
+
 static Status cast_group(Cast *cast, int group, int first, int first_id, const TableRows *types, const Catalog *catalog)
 {
     const Scenario      *s = cast->scenario;
@@ -176,6 +191,7 @@ static Status cast_group(Cast *cast, int group, int first, int first_id, const T
                               .group = group,
                               .round = -1,
                               .joints = -1,
+                              .own = -1,
                               .hit_s = INFINITY,
                               .rest_s = INFINITY,
                               .algorithm = (uint8_t)(g->dead_reckoning ? g->dead_reckoning : s->dis.dead_reckoning)};
@@ -195,6 +211,7 @@ static Status cast_group(Cast *cast, int group, int first, int first_id, const T
         return STATUS_NO_MEMORY;
 
     const int size = scenario_group_size(s, g);
+    if (g->over) return cast_nets(cast, g, first, first_id, &e, size);
     for (int k = 0; k < size; k++) {
         const uint64_t at = 2 * (uint64_t)(first + k);
         const double   u = 2 * random_uniform((uint64_t)s->seed, 4, 0, at) - 1;
@@ -230,6 +247,7 @@ static Status cast_shot(Cast *cast, int shot, int *entity, int *round, int first
                          .group = -1,
                          .round = *round,
                          .joints = -1,
+                         .own = -1,
                          .hit_s = INFINITY,
                          .rest_s = INFINITY};
         cast->round[*round].munition = (*entity)++;
@@ -240,13 +258,14 @@ static Status cast_shot(Cast *cast, int shot, int *entity, int *round, int first
 static bool needs_models(const Scenario *s)
 {
     for (int i = 0; i < s->group_count; i++)
-        if (s->group[i].turret != SCENARIO_TURRET_NONE) return true;
+        if (s->group[i].turret != SCENARIO_TURRET_NONE || s->group[i].hide != SCENARIO_HIDE_NONE || s->group[i].over)
+            return true;
     return false;
 }
 
-static Status fill(Cast *cast, int *ids, int *first)
+static Status fill(Cast *cast, int *ids, int *first, const HideJudge *judge)
 {
-    static const double coarse_chord_error_m = 0.1; /* only joints are needed, not shapes */
+    static const double coarse_chord_error_m = 0.1; /* joints, and roughly what is seen of a shape */
     const Scenario     *s = cast->scenario;
     char                path[4096];
     TableRows           types;
@@ -263,12 +282,15 @@ static Status fill(Cast *cast, int *ids, int *first)
     }
     for (int i = 0; i < s->shot_count && status == STATUS_OK; i++)
         status = cast_shot(cast, i, &entity, &round, ids[s->group_count + i], &types);
+    if (status == STATUS_OK && catalog) status = cast_hide(cast, ids, first, catalog, judge);
     if (catalog) catalog_close(catalog);
     table_rows_close(&types);
     return status == STATUS_OK ? cast_solve_shots(cast, ids, first) : status;
 }
 
-Status cast_create(Cast **out, const Scenario *scenario)
+Status cast_create(Cast **out, const Scenario *scenario) { return cast_create_judged(out, scenario, NULL); }
+
+Status cast_create_judged(Cast **out, const Scenario *scenario, const HideJudge *judge)
 {
     Cast *cast = calloc(1, sizeof *cast);
     if (!cast) return STATUS_NO_MEMORY;
@@ -290,7 +312,7 @@ Status cast_create(Cast **out, const Scenario *scenario)
     Status     status = whole ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK && !scenario_ids(ids, scenario)) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = exercise_ground_create(&cast->ground, scenario);
-    if (status == STATUS_OK) status = fill(cast, ids, first);
+    if (status == STATUS_OK) status = fill(cast, ids, first, judge);
     free(ids);
     free(first);
     if (status == STATUS_OK) *out = cast;
@@ -308,5 +330,6 @@ void cast_destroy(Cast *cast)
     free(cast->joint);
     free(cast->route);
     free(cast->stop_s);
+    free(cast->hidden);
     free(cast);
 }

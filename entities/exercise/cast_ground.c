@@ -2,6 +2,7 @@
 
 #include "entities/exercise/cast_private.h"
 #include "terrain/from_files/elevation_import.h"
+#include "terrain/ground/placed.h"
 #include "terrain/store/store.h"
 
 #include <stdlib.h>
@@ -45,9 +46,19 @@ Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
     for (uint64_t i = 0; i < 2; i++)
         ground.phase_rad[i] = 2 * pi_rad * random_uniform((uint64_t)scenario->seed, 1, 0, i);
     set_curvature(&ground);
-    if (*scenario->ground.store && *scenario->ground.elevation) {
-        log_error("scenario: ground.store and ground.elevation exclude each other: leave one of them out");
+    const bool invented = scenario->ground.invented;
+    if (invented + (*scenario->ground.store != 0) + (*scenario->ground.elevation != 0) > 1) {
+        log_error("scenario: ground.store, ground.elevation and ground.invented exclude each other: leave one of them");
         return STATUS_BAD_VALUE;
+    }
+    if (invented) {
+        LandscapeConfig land = landscape_default_config();
+        land.seed = (uint64_t)scenario->ground.seed;
+        land.relief_m = scenario->ground.relief_m;
+        land.spacing_m = scenario->ground.spacing_m;
+        status = landscape_placed(&ground.stored, &land, &origin, NULL);
+        if (status != STATUS_OK) return status;
+        ground.real = true;
     }
     if (*scenario->ground.store) {
         status = store_open_landscape(&ground.stored, scenario->ground.store, (uint64_t)scenario->seed);

@@ -6,6 +6,8 @@
 #ifndef ENTITIES_EXERCISE_CAST_PRIVATE_H
 #define ENTITIES_EXERCISE_CAST_PRIVATE_H
 
+#include "entities/catalog/catalog.h"
+#include "entities/exercise/hide_judge.h"
 #include "entities/exercise/scenario.h"
 #include "entities/motion/articulation.h"
 #include "entities/motion/dead_reckoning.h"
@@ -94,7 +96,15 @@ typedef struct CastEntity {
     float         behind_m, aside_m; /* place in its formation: behind the beginning of the route, and to its left */
     double        hit_s, rest_s;     /* when it is hit, and when it has come to rest; INFINITY: never */
     uint8_t       damage;            /* its damage since the hit */
+    int           own;               /* place of its own, of Cast.hidden; -1: on its group's route */
 } CastEntity;
+
+/* Where an entity hides. */
+typedef struct CastHidden {
+    double x_m, y_m, heading_rad;  /* ENU at the place */
+    double planned, judged;        /* shares hidden from the observer of the scenario; judged: or estimated */
+    int    entity, fit;            /* its number in Cast.entity; candidates that were of the kind */
+} CastHidden;
 
 /* One shot of one munition. */
 typedef struct CastRound {
@@ -114,17 +124,20 @@ typedef struct CastJoint {
 typedef struct Cast {
     const Scenario *scenario;
     ExerciseGround  ground;
-    int             entity_count, round_count, joint_count;
+    int             entity_count, round_count, joint_count, hidden_count;
     CastEntity     *entity;
     CastRound      *round;
     CastJoint      *joint;  /* cast_max_joints for each kind of entity that has joints; class 0 ends the list */
     Route          *route;  /* route of each group; without knots: the group is stationary */
     double         *stop_s; /* when each group starts to stop; INFINITY: never */
+    CastHidden     *hidden; /* [hidden_count] */
 } Cast;
 
 /* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not
  * reach. */
 Status cast_create(Cast **out, const Scenario *scenario);
+/* The same; what hides is placed by what a tracer sees of plants. judge NULL: by estimates alone. */
+Status cast_create_judged(Cast **out, const Scenario *scenario, const HideJudge *judge);
 void   cast_destroy(Cast *cast);
 
 typedef struct CastPose {
@@ -152,6 +165,10 @@ void cast_marking(char marking[11], const Cast *cast, int entity);
  * entities/exercise/cast_shots.c */
 Status cast_solve_shots(Cast *cast, const int *ids, const int *first);
 void   cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);
+
+/* Private to the cast: finds the place of each entity that hides, in file order, after all others are placed; nets are
+ * then where what they cover is. entities/exercise/cast_hide.c */
+Status cast_hide(Cast *cast, const int *ids, const int *first, const Catalog *catalog, const HideJudge *judge);
 
 /* Axes of a body as columns: x forward, y right, z down. */
 void cast_axes(double r_enu_from_body[9], const double forward[3], const double up[3]);

@@ -76,6 +76,12 @@ static const SettingTable table = {
 
 static Scenario default_scenario(void) { return (Scenario){SCENARIO_ROWS(SETTING_DEFAULT)}; }
 
+const char *scenario_hide_name(enum ScenarioHide hide)
+{
+    static const char *const names[] = {"none", "open", "tree-line", "wood", "hedge", "hollow", "beside"};
+    return names[hide];
+}
+
 /* ---- checks across keys ------------------------------------------------------------------------- */
 
 bool scenario_type_parse(DisEntityType *out, const char *text)
@@ -166,6 +172,18 @@ static bool type_fits(const Scenario *s, int line, const char *key, const char *
     return false;
 }
 
+static bool hide_fits(const Scenario *s, const ScenarioGroup *group)
+{
+    const char *wrong = NULL;
+    if (group->hide == SCENARIO_HIDE_NONE) wrong = *group->beside ? "beside: needs hide: beside" : NULL;
+    else if (!s->ground.invented) wrong = "hide: needs ground.invented: true, whose plants are known";
+    else if (group->route_m.count != 2) wrong = "hide: needs one place in route_m, near which it stands";
+    else if ((group->hide == SCENARIO_HIDE_BESIDE) != (*group->beside != 0))
+        wrong = "hide: beside and beside: NAME ID need each other";
+    if (wrong) log_error("scenario: %s:%d: vehicles: %s", s->path, group->line, wrong);
+    return !wrong;
+}
+
 static bool group_fits(const Scenario *s, const ScenarioGroup *group)
 {
     const int numbers = group->route_m.count;
@@ -178,6 +196,7 @@ static bool group_fits(const Scenario *s, const ScenarioGroup *group)
         log_error("scenario: %s:%d: vehicles: loop: needs at least three places in route_m", s->path, group->line);
         return false;
     }
+    if (!hide_fits(s, group)) return false;
     const int places = numbers / 2;
     for (int i = 0; places > 1 && i < places - (group->loop ? 0 : 1); i++) {
         const double *a = &group->route_m.number[2 * i], *b = &group->route_m.number[2 * ((i + 1) % places)];
@@ -198,23 +217,36 @@ static bool group_fits(const Scenario *s, const ScenarioGroup *group)
     return type_fits(s, group->line, "vehicles", group->type);
 }
 
-static bool name_fits(const Scenario *s, const int *ids, int line, const char *key, const char *name)
+static bool name_fits(const Scenario *s, const int *ids, int line, const char *list, const char *key, const char *name)
 {
     int group, member;
     if (scenario_find(&group, &member, s, ids, name)) return true;
     char shown[128];
     text_escape(shown, sizeof shown, name, strlen(name));
     const ScenarioGroup *first = s->group_count ? s->group : NULL;
-    log_error("scenario: %s:%d: shots: %s: there is no '%s'; an entity is called by name and id%s%.*s%s", s->path, line,
-              key, shown, first ? ", for example '" : "", first ? scenario_name_size : 0, first ? first->name : "",
+    log_error("scenario: %s:%d: %s: %s: there is no '%s'; an entity is called by name and id%s%.*s%s", s->path, line,
+              list, key, shown, first ? ", for example '" : "", first ? scenario_name_size : 0, first ? first->name : "",
               first ? " N'" : "");
+    return false;
+}
+
+/* What it stands beside stands itself, and does not hide. */
+static bool beside_fits(const Scenario *s, const int *ids, const ScenarioGroup *group)
+{
+    int at, member;
+    if (!*group->beside) return true;
+    if (!name_fits(s, ids, group->line, "vehicles", "beside", group->beside)) return false;
+    scenario_find(&at, &member, s, ids, group->beside);
+    if (s->group[at].hide == SCENARIO_HIDE_NONE && s->group[at].route_m.count == 2) return true;
+    log_error("scenario: %s:%d: vehicles: beside: '%s' moves or hides itself; name what stands at its route_m", s->path,
+              group->line, group->beside);
     return false;
 }
 
 static bool shot_fits(const Scenario *s, const int *ids, const ScenarioShot *shot)
 {
-    if (!name_fits(s, ids, shot->line, "from", shot->from)) return false;
-    if (*shot->at && !name_fits(s, ids, shot->line, "at", shot->at)) return false;
+    if (!name_fits(s, ids, shot->line, "shots", "from", shot->from)) return false;
+    if (*shot->at && !name_fits(s, ids, shot->line, "shots", "at", shot->at)) return false;
     if ((*shot->at != 0) == (shot->at_m.count != 0) || (shot->at_m.count != 0 && shot->at_m.count != 2)) {
         log_error("scenario: %s:%d: shots: give either at: NAME ID, or at_m: [x, y]", s->path, shot->line);
         return false;
@@ -282,11 +314,36 @@ Status scenario_check(const Scenario *s)
     bool fits = scenario_ids(ids, s);
     if (!fits) log_error("scenario: %s: entity numbers are given twice or above 65533 (id, count)", s->path);
     for (int i = 0; i < s->shot_count && fits; i++) fits = shot_fits(s, ids, &s->shot[i]);
+    for (int i = 0; i < s->group_count && fits; i++) fits = beside_fits(s, ids, &s->group[i]);
     free(ids);
     return fits ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
 /* ---- the file ------------------------------------------------------------------------------------ */
+
+/* A group of nets for each group that has them: so many, where its members are. */
+static Status add_nets(Scenario *s)
+{
+    const int groups = s->group_count;
+    for (int g = 0; g < groups; g++) {
+        if (!s->group[g].net) continue;
+        ScenarioGroup *net = add_group(s);
+        if (!net) {
+            log_error("scenario: %s: more than %d groups with their nets", s->path, scenario_max_groups);
+            return STATUS_BAD_VALUE;
+        }
+        *net = s->group[g];
+        snprintf(net->name, sizeof net->name, "Net");
+        snprintf(net->type, sizeof net->type, "net");
+        net->over = g + 1;
+        net->id = 0;
+        net->engine = net->net = net->parked = false;
+        net->turret = SCENARIO_TURRET_NONE, net->dust = SCENARIO_DUST_NONE;
+        net->appearance = 0;
+        net->hide = SCENARIO_HIDE_NONE, net->beside[0] = 0;
+    }
+    return STATUS_OK;
+}
 
 Status scenario_read(Scenario *out, const char *path)
 {
@@ -294,6 +351,7 @@ Status scenario_read(Scenario *out, const char *path)
     *out = (Scenario){0};
     snprintf(s.path, sizeof s.path, "%s", path);
     Status status = settings_read(&s, NULL, &table, path);
+    if (status == STATUS_OK) status = add_nets(&s);
     if (status == STATUS_OK) status = scenario_check(&s);
     if (status == STATUS_OK) *out = s;
     else scenario_destroy(&s);
@@ -303,6 +361,69 @@ Status scenario_read(Scenario *out, const char *path)
 Status scenario_set(Scenario *scenario, const char *key, const char *value, const char *source)
 {
     return settings_set(scenario, NULL, &table, key, value, source);
+}
+
+Status scenario_set_group(Scenario *scenario, const char *name, const char *key, const char *value, const char *source)
+{
+    bool any = false;
+    if (strcmp(key, "net") == 0 || strcmp(key, "name") == 0) {
+        log_error("scenario: %s: %s: is of the file alone", source, key);
+        return STATUS_BAD_VALUE;
+    }
+    for (int g = 0; g < scenario->group_count; g++) {
+        ScenarioGroup *group = &scenario->group[g];
+        const bool     over = group->over && strcmp(scenario->group[group->over - 1].name, name) == 0;
+        if (over) { /* nets are where what they cover is, and as many */
+            const char *const same[] = {"count", "columns", "route_m", "appears_s", "leaves_s", "leaves"};
+            bool              taken = false;
+            for (size_t k = 0; k < sizeof same / sizeof *same; k++) taken |= strcmp(key, same[k]) == 0;
+            if (taken && settings_set(group, NULL, &group_table, key, value, source) != STATUS_OK)
+                return STATUS_BAD_VALUE;
+            continue;
+        }
+        if (group->over || strcmp(group->name, name) != 0) continue;
+        const Status status = settings_set(group, NULL, &group_table, key, value, source);
+        if (status != STATUS_OK) return status;
+        any = true;
+    }
+    if (any) return STATUS_OK;
+    char shown[128];
+    text_escape(shown, sizeof shown, name, strlen(name));
+    log_error("scenario: %s: there are no vehicles with name: '%s'", source, shown);
+    return STATUS_BAD_VALUE;
+}
+
+/* vehicles.NAME.key, whose name may hold dots. False: it is of no group. */
+static bool split_group_key(char name[scenario_name_size], const char **key, const char *text)
+{
+    static const char of_groups[] = "vehicles.";
+    const char       *dot = strrchr(text, '.'), *from = text + sizeof of_groups - 1;
+    if (strncmp(text, of_groups, sizeof of_groups - 1) != 0 || dot <= from || dot - from >= scenario_name_size)
+        return false;
+    memcpy(name, from, (size_t)(dot - from));
+    name[dot - from] = 0;
+    *key = dot + 1;
+    return true;
+}
+
+Status scenario_set_any(Scenario *scenario, const char *key, const char *value, const char *source)
+{
+    char        name[scenario_name_size];
+    const char *of_group;
+    return split_group_key(name, &of_group, key) ? scenario_set_group(scenario, name, of_group, value, source)
+                                                 : scenario_set(scenario, key, value, source);
+}
+
+bool scenario_key_type(SettingType *out, const char *key)
+{
+    char                name[scenario_name_size];
+    const char         *of_group;
+    const bool          group = split_group_key(name, &of_group, key);
+    const SettingTable *of = group ? &group_table : &table;
+    const int           row = settings_find(of, group ? of_group : key);
+    if (row < 0) return false;
+    *out = of->row[row].type;
+    return true;
 }
 
 void scenario_destroy(Scenario *scenario)

@@ -36,7 +36,20 @@ enum {
     ROW(BOOL, , loop, false, "the route is repeated") \
     ROW(DOUBLE, , speed_mps, 0, 0, 2000, "m/s", "") \
     ROW(DOUBLE, , unsteady_m, 0, 0, 100, "m", "amplitude of the motion ahead and behind of its place; period 25 s") \
-    ROW(DOUBLE, , heading_deg, 0, -360, 360, "deg", "of entities that stand, clockwise from north") \
+    ROW(DOUBLE, , heading_deg, NAN, -360, 360, "deg", \
+        "of entities that stand, clockwise from north; absent: north, and of those with hide drawn for each") \
+    ROW(CHOICE, , hide, SCENARIO_HIDE_NONE, ScenarioHide, \
+        (SCENARIO_HIDE_NONE, "none")(SCENARIO_HIDE_OPEN, "open")(SCENARIO_HIDE_TREE_LINE, "tree-line") \
+        (SCENARIO_HIDE_WOOD, "wood")(SCENARIO_HIDE_HEDGE, "hedge")(SCENARIO_HIDE_HOLLOW, "hollow") \
+        (SCENARIO_HIDE_BESIDE, "beside"), \
+        "where each stands near route_m, on ground.invented: in the open, before or behind the edge of a wood, in it, " \
+        "at a hedge, in a hollow, or beside an entity of this scenario; none: at route_m") \
+    ROW(DOUBLE, , hide_m, 150, 5, 1000, "m", "largest distance from route_m of what hides") \
+    ROW(DOUBLE, , occlusion, NAN, 0, 0.95, "", \
+        "share of each that is to be hidden from the observer of seen; absent: drawn in 0.1 .. 0.9 for each, and in the " \
+        "open none") \
+    ROW(TEXT, , beside, "", 2 * scenario_name_size, "", "of hide: beside: a building, a wall ..., `NAME ID`") \
+    ROW(BOOL, , net, false, "a camouflage net over each, an entity of its own (etc/catalog.csv: net)") \
     ROW(DOUBLE, , height_m, 0, -1000, 100000, "m", "above the ground at each point") \
     ROW(DOUBLE, , start_s, NAN, 0, 1e6, "s", "stands until then; absent: moves from the beginning") \
     ROW(DOUBLE, , stop_s, NAN, 0, 1e6, "s", "begins to stop then; absent: at the end of the route") \
@@ -54,6 +67,7 @@ enum {
         (SCENARIO_DUST_MEDIUM, "medium")(SCENARIO_DUST_LARGE, "large"), \
         "dust trail reported while it moves") \
     ROW(BOOL, , engine, true, "runs") \
+    ROW(DOUBLE, , engine_off_s, NAN, 0, 1e6, "s", "the engine is stopped then; absent: it runs on") \
     ROW(BOOL, , parked, false, "an aircraft stands on the ground") \
     ROW(INT, , appearance, 0, 0, 2147483647, "", "further appearance bits, as one number") \
     ROW(INT, , dead_reckoning, 0, 0, 9, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning")
@@ -88,7 +102,8 @@ enum {
     ROW(INT, , dead_reckoning, 0, 0, 9, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning")
 
 #define SCENARIO_ROWS(ROW) \
-    SCENARIO_TOP(ROW) SCENARIO_PLACE(ROW) SCENARIO_GROUND(ROW) SCENARIO_DIS(ROW) SCENARIO_FAULTS(ROW)
+    SCENARIO_TOP(ROW) SCENARIO_PLACE(ROW) SCENARIO_GROUND(ROW) SCENARIO_SEEN(ROW) SCENARIO_DIS(ROW) \
+    SCENARIO_FAULTS(ROW)
 
 #define SCENARIO_TOP(ROW) \
     ROW(DOUBLE, , duration_s, 30, 0, 1e6, "s", "") \
@@ -104,6 +119,11 @@ enum {
 #define SCENARIO_GROUND(ROW) \
     ROW(DOUBLE, ground., swell_m, 1.5, 0, 20, "m", \
         "height of the swells of synthetic ground, which are 0.4 to 0.6 km long") \
+    ROW(BOOL, ground., invented, false, \
+        "the invented ground and the plants of a node with terrain.place, of the same seed, on which entities can hide") \
+    ROW(LONG, ground., seed, 1, 0, 2147483647, "", "of ground.invented: the node's seed") \
+    ROW(DOUBLE, ground., relief_m, 15, 0, 200, "m", "of ground.invented: the node's terrain.relief_m") \
+    ROW(DOUBLE, ground., spacing_m, 4, 1, 30, "m", "of ground.invented: the node's terrain.spacing_m") \
     ROW(PATH, ground., store, "", 1024, \
         "terrain store of real ground (`pitviper terrain import`), instead of ground.elevation; empty: none") \
     ROW(PATHS, ground., elevation, "", scenario_path_size, \
@@ -114,6 +134,13 @@ enum {
     ROW(PATH, ground., geoid, "", scenario_path_size, "geoid grid; empty: EGM96 of proj-data") \
     ROW(DOUBLE, ground., smooth_m, 2, 0.5, 30, "m", \
         "vehicles do not follow bumps of real ground that are shorter than this")
+
+/* Whence hidden entities are looked at, each of them alike: as observer.* of a node at the start of its orbit. */
+#define SCENARIO_SEEN(ROW) \
+    ROW(DOUBLE, seen., bearing_deg, 180, -360, 360, "deg", \
+        "of the observer that entities hide from, from each of them, clockwise from north") \
+    ROW(DOUBLE, seen., range_m, 600, 10, 100000, "m", "its ground distance from each") \
+    ROW(DOUBLE, seen., height_m, 250, 1, 20000, "m", "its height above each")
 
 #define SCENARIO_DIS(ROW) \
     ROW(INT, dis., version, 7, 5, 7, "", "") \
@@ -153,6 +180,7 @@ enum {
 typedef struct ScenarioGroup {
     SCENARIO_GROUP(SETTING_MEMBER) /* name: marking, and for shots `NAME ID`; route_m: smooth through its points */
     int line;                      /* line in the file */
+    int over;                      /* nets alone: number of the group that they are over, plus 1; else 0 */
 } ScenarioGroup;
 
 /* One line of `shots`: a missile or rounds. at empty: at_m counts. */
@@ -166,6 +194,7 @@ typedef struct Scenario {
     SCENARIO_TOP(SETTING_MEMBER)
     struct { SCENARIO_PLACE(SETTING_MEMBER) } place;
     struct { SCENARIO_GROUND(SETTING_MEMBER) } ground;
+    struct { SCENARIO_SEEN(SETTING_MEMBER) } seen;
     struct { SCENARIO_DIS(SETTING_MEMBER) } dis;
     struct { SCENARIO_FAULTS(SETTING_MEMBER) } faults;
     int            group_count, shot_count;
@@ -179,6 +208,14 @@ typedef struct Scenario {
 Status scenario_read(Scenario *out, const char *path);
 /* One key above the lists as a command line gives it, `dis.version`, 5. On failure *scenario is unchanged. */
 Status scenario_set(Scenario *scenario, const char *key, const char *value, const char *source);
+/* A key of an item of vehicles, by the item's name: of all items of that name. STATUS_BAD_VALUE, logged: there is none,
+ * or as scenario_set. `net` is a key of the file alone. */
+Status scenario_set_group(Scenario *scenario, const char *name, const char *key, const char *value, const char *source);
+/* A key as a command line or an axis of a sweep gives it: `seed`, `dis.version`, or `vehicles.NAME.key` of all
+ * vehicles of that name. */
+Status scenario_set_any(Scenario *scenario, const char *key, const char *value, const char *source);
+/* Of which type such a key is; false: there is none. */
+bool scenario_key_type(SettingType *out, const char *key);
 /* Repeats the checks across keys, after scenario_set. */
 Status scenario_check(const Scenario *scenario);
 void   scenario_destroy(Scenario *scenario); /* accepts zeroes */
@@ -192,6 +229,7 @@ bool scenario_find(int *group, int *member, const Scenario *scenario, const int 
 /* First id of each group [group_count], then of each shot [shot_count]. False: above 65533, or given twice. */
 bool scenario_ids(int *ids, const Scenario *scenario);
 
+const char *scenario_hide_name(enum ScenarioHide hide);
 /* `1.1.222.1.1.1.0`; true when all seven are there. */
 bool scenario_type_parse(DisEntityType *out, const char *text);
 

@@ -113,6 +113,8 @@ static const struct {
     {"locomotive", NULL, parametric_structure},
     {"railcar", NULL, parametric_structure},
     {"animal", NULL, parametric_structure},
+    {"net", NULL, parametric_cover},
+    {"wall", NULL, parametric_cover},
     {"none", NULL, parametric_structure},
     {"chaff", NULL, parametric_structure},
     {"van", NULL, parametric_civil},

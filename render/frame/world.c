@@ -59,7 +59,7 @@ Status world_need_patches(const World *world, const Snapshot *snapshot)
 /* The prototypes, and what their light is kept by. */
 static Status grow_plants(World *world, CacheKey *key, const ForestConfig *config, const char *isa, Pool *pool)
 {
-    static const uint64_t seed = 1995; /* the prototypes are the same in every world */
+    const uint64_t        seed = plants_seed;
     const int64_t         embree = tracer_embree(world->tracer);
     const uint8_t         light[2] = {config->leaves, config->fine}; /* bare trees let more through to their bark */
     const Status          status = plants_create(&world->plants, seed, pool);

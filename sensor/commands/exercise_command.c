@@ -7,7 +7,9 @@
 #include "dis/network/udp.h"
 #include "entities/exercise/exercise.h"
 #include "sensor/settings/command_line.h"
+#include "sensor/commands/exercise_places_private.h"
 #include "sensor/commands/overwrite.h"
+#include "sensor/commands/plant_judge.h"
 #include "sensor/node/run/stop.h"
 
 #include <dirent.h>
@@ -22,7 +24,7 @@
 enum { max_sets = 256, path_size = 4096 };
 
 typedef struct Options {
-    const char  *scenario, *out, *send, *datagrams;
+    const char  *scenario, *out, *send, *datagrams, *places;
     double       speed;
     bool         overwrite;
     DisUdpConfig udp;
@@ -52,10 +54,12 @@ static const char help[] =
     "                       in real time, until the scenario ends or Ctrl-C\n"
     "  --overwrite          replace an existing LOG; without it that is an error\n"
     "  --datagrams DIR      write each datagram as a file to this folder\n"
+    "  --places FILE        a table (CSV) of where each entity with `hide` stands: what hides it, planned and estimated "
+    "share\n"
     "scenario\n"
     "  --set KEY=VALUE      one key of the scenario, such as dis.version=6, dis.bundle=true, place.lat_deg=44 or "
     "seed=7;\n"
-    "                       may be repeated\n"
+    "                       may be repeated; vehicles.NAME.KEY=VALUE is of all vehicles of that name\n"
     "  --keys               print every key of a scenario, with its range and default\n"
     "with --send\n"
     "  --interface NAME     send from this network interface, such as eth0\n"
@@ -133,11 +137,12 @@ static bool parse_speed(double *out, const char *text)
 /* Returns 0 to go on; else the program exits with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
-    enum { OUT = 'o', HELP = 'h', SEND = 256, SET, DATAGRAMS, INTERFACE, TTL, SPEED, KEYS, OVERWRITE };
+    enum { OUT = 'o', HELP = 'h', SEND = 256, SET, DATAGRAMS, INTERFACE, TTL, SPEED, KEYS, OVERWRITE, PLACES };
     static const struct option options[] = {{"out", 1, NULL, OUT},
                                             {"send", 1, NULL, SEND},
                                             {"set", 1, NULL, SET},
                                             {"datagrams", 1, NULL, DATAGRAMS},
+                                            {"places", 1, NULL, PLACES},
                                             {"ttl", 1, NULL, TTL},
                                             {"speed", 1, NULL, SPEED},
                                             {"keys", 0, NULL, KEYS},
@@ -164,6 +169,9 @@ static int parse(Options *o, int argc, char **argv)
             break;
         case DATAGRAMS:
             o->datagrams = optarg;
+            break;
+        case PLACES:
+            o->places = optarg;
             break;
         case SET:
             ok = o->set_count < max_sets;
@@ -210,7 +218,7 @@ static int parse(Options *o, int argc, char **argv)
 
 static bool apply_set(Scenario *scenario, const char *text)
 {
-    char        key[64];
+    char        key[96];
     const char *equals = strchr(text, '=');
     if (!equals || equals - text >= (long)sizeof key) {
         log_error("exercise: --set: '%s' is not KEY=VALUE, for example dis.version=6", text);
@@ -218,7 +226,7 @@ static bool apply_set(Scenario *scenario, const char *text)
     }
     memcpy(key, text, (size_t)(equals - text));
     key[equals - text] = 0;
-    return scenario_set(scenario, key, equals + 1, "--set") == STATUS_OK;
+    return scenario_set_any(scenario, key, equals + 1, "--set") == STATUS_OK;
 }
 
 static bool is_file(const char *path)
@@ -393,6 +401,7 @@ int exercise_command(int argc, char **argv)
     Scenario  scenario = {0};
     Cast     *cast = NULL;
     Run       run = {0};
+    PlantJudge *judge = NULL;
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
 
@@ -405,8 +414,14 @@ int exercise_command(int argc, char **argv)
             return 2;
         }
     status = scenario_check(&scenario);
-    if (status == STATUS_OK) status = cast_create(&cast, &scenario);
+    if (status == STATUS_OK) status = plant_judge_create(&judge, "avx2");
+    if (status == STATUS_OK) {
+        const HideJudge hide = plant_judge_hide(judge);
+        status = cast_create_judged(&cast, &scenario, &hide);
+    }
+    plant_judge_destroy(judge);
     if (status == STATUS_OK && o.out) status = overwrite_file("exercise", o.out, o.overwrite);
+    if (status == STATUS_OK) status = exercise_places(cast, o.places, o.overwrite);
     if (status == STATUS_OK) {
         stop_by_signals();
         const double epoch_unix_s = epoch_of(&scenario, o.send != NULL);

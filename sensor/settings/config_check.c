@@ -5,7 +5,9 @@
 #include "dis/pdu/pdu.h"
 #include "dis/capture/recorder.h"
 #include "pitviper_channels.h"
+#include "sensor/settings/aim_offset.h"
 #include "sensor/settings/publish_choice.h"
+#include "terrain/ground/placed.h"
 
 /* ---- bands: with further channels chosen in their places ------------------------------------------ */
 
@@ -173,7 +175,8 @@ static bool store_alone(const Config *config)
     } other[] = {{"elevation", *config->terrain.elevation},
                  {"cover", *config->terrain.cover},
                  {"orthophoto", *config->terrain.orthophoto},
-                 {"spacing_m", config->terrain.spacing_m > 0}};
+                 {"spacing_m", config->terrain.spacing_m > 0},
+                 {"place", *config->terrain.place}};
     if (!*config->terrain.store) return true;
     for (size_t k = 0; k < sizeof other / sizeof *other; k++)
         if (other[k].set) {
@@ -229,10 +232,31 @@ static bool detector_good(const Config *config)
     return good;
 }
 
+/* Checks the place of ground that follows no exercise. */
+static bool place_good(const Config *config)
+{
+    Geodetic    place;
+    const char *text = config->terrain.place, *where = config_where(config, "terrain.place");
+    if (!*text) return true;
+    if (!landscape_place_parse(&place, text)) {
+        log_error("config: %sterrain.place: '%s' is not latitude, longitude and height: -90 .. 90 and -180 .. 180 deg, "
+                  "-500 .. 9000 m, for example 50.1,8.6,120",
+                  where, text);
+        return false;
+    }
+    if (*config->terrain.elevation || config->terrain.ground == TERRAIN_GROUND_FIT) {
+        log_error("config: %sterrain.place: this ground follows from seed and place alone; leave terrain.%s out, or "
+                  "terrain.place",
+                  where, *config->terrain.elevation ? "elevation" : "ground: fit");
+        return false;
+    }
+    return true;
+}
+
 /* Checks which keys of terrain exclude and which need one another. */
 static bool terrain_good(const Config *config)
 {
-    bool good = store_alone(config);
+    bool good = store_alone(config) && place_good(config);
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&
         !(config->terrain.spacing_m >= 1 && config->terrain.spacing_m <= 30)) {
         log_error("config: %sterrain.spacing_m: %g is not 0 or 1 .. 30 m for synthetic terrain",
@@ -279,10 +303,17 @@ static bool products_good(const Config *config)
     return good;
 }
 
-/* Checks heat.facets, weather.day and sensor.mount. */
+/* Checks heat.facets, weather.day, sensor.mount and sensor.aim_offset. */
 static bool scene_good(const Config *config)
 {
-    bool good = true;
+    AimOffset offset;
+    bool      good = true;
+    if (!aim_offset_parse(&offset, config->sensor.aim_offset)) {
+        log_error("config: %ssensor.aim_offset: '%s' is not none, drawn, drawn W,H with shares in 0 .. 1, X,Y with shares "
+                  "in -0.5 .. 0.5, or X,Y deg with -60 .. 60",
+                  config_where(config, "sensor.aim_offset"), config->sensor.aim_offset);
+        good = false;
+    }
     if (config->heat.facets % 2 == 0) {
         log_error("config: %sheat.facets: %d is even; odd, 3 .. 17, so that one of them is level",
                   config_where(config, "heat.facets"), config->heat.facets);

@@ -40,6 +40,12 @@ enum { config_paths_size = 4096 };
     ROW(DOUBLE, sensor., gimbal_limit_deg, 45, 0, 180, "deg", "largest angle off the body axis") \
     ROW(DOUBLE, sensor., gimbal_rate_dps, 60, 0.01, 10000, "deg/s", "largest slew rate") \
     ROW(DOUBLE, sensor., gimbal_lag_s, 0.03, 0, 10, "s", "time constant of the tracking loop") \
+    ROW(TEXT, sensor., aim_offset, "none", 40, "", \
+        "where in the image the aim is: none, in the middle; drawn, by the seed for each host over four fifths of its " \
+        "width and height; drawn W,H: over these shares; X,Y: shares right of the middle and below, -0.5 .. 0.5; X,Y deg") \
+    ROW(DOUBLE, sensor., walk_deg, 0, 0, 20, "deg", \
+        "rms of a slow walk of the line of sight about its aim, in each axis: hand-over errors, drift of a gimbal") \
+    ROW(DOUBLE, sensor., walk_s, 10, 0.01, 1e5, "s", "time over which its correlation falls to 1/e") \
     ROW(TEXT, sensor., mount, "auto", 48, "", \
         "what the sensor is mounted on: auto (nose or roof), or a part of the host: primary turret, primary gun " \
         "2, the name of a node") \
@@ -284,6 +290,9 @@ enum { config_paths_size = 4096 };
     ROW(DOUBLE, terrain., relief_m, 15, 0, 200, "m", "rms height of the hills of synthetic terrain") \
     ROW(DOUBLE, terrain., spacing_m, 0, 0, 1000, "m", \
         "distance between elevation posts; 0: 4 for synthetic terrain, else that of the files") \
+    ROW(TEXT, terrain., place, "", 80, "", \
+        "latitude and longitude, degrees, and height, m, of synthetic ground that follows from them and the seed alone, " \
+        "as an exercise with ground.invented was placed on: 50.1,8.6,120; empty: led through the exercise") \
     ROW(PATH, terrain., store, "", 1024, \
         "terrain store of `pitviper terrain import`, instead of elevation, cover and orthophoto; empty: none") \
     ROW(PATHS, terrain., elevation, "", config_paths_size, \

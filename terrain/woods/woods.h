@@ -20,6 +20,13 @@ typedef struct WoodsPath {
     double low_half_m;     /* half the width that is cleared of low plants; 0: they stay, as below a flight */
 } WoodsPath;
 
+/* What a vehicle that stands among plants needs clear: its footprint and half a metre about it. p_m: its origin; nose:
+ * the direction of its front, level; front_m, back_m: of its box, from the origin, back_m below 0. A capsule, whose
+ * ends hold the corners of what is up to 8 m wide and reach width_m / 4 + 0.5 beyond bow and stern. */
+WoodsPath woods_footprint(const double p_m[2], const double nose[2], double front_m, double back_m, double width_m);
+/* Distance of a place from a path's middle line. */
+double woods_path_away_m(const WoodsPath *path, double x_m, double y_m);
+
 /* A place about which trees are to stand. */
 typedef struct WoodsPlace {
     double p_m[2]; /* ENU */

@@ -12,13 +12,21 @@ static const double way_room_m = 1;
 
 /* ---- clearings -------------------------------------------------------------------------------- */
 
-/* Distance of a place from the path's middle line. */
-static double away_from(const WoodsPath *p, double x_m, double y_m)
+double woods_path_away_m(const WoodsPath *p, double x_m, double y_m)
 {
     const double dx = p->b_m[0] - p->a_m[0], dy = p->b_m[1] - p->a_m[1], square = dx * dx + dy * dy;
     const double ax = x_m - p->a_m[0], ay = y_m - p->a_m[1];
     const double t = square > 0 ? clamp((ax * dx + ay * dy) / square, 0, 1) : 0;
     return hypot(ax - t * dx, ay - t * dy);
+}
+
+WoodsPath woods_footprint(const double p_m[2], const double nose[2], double front_m, double back_m, double width_m)
+{
+    static const double room_m = 0.5;
+    const double        in_m = 0.25 * width_m, from_m = fmin(back_m + in_m, 0), to_m = fmax(front_m - in_m, 0);
+    WoodsPath           path = {.half_m = 0.5 * width_m + room_m, .low_half_m = 0.5 * width_m + room_m};
+    for (int k = 0; k < 2; k++) path.a_m[k] = p_m[k] + nose[k] * from_m, path.b_m[k] = p_m[k] + nose[k] * to_m;
+    return path;
 }
 
 /* Calls count or put for every square that a path may reach into. */
@@ -40,7 +48,7 @@ static void walk_squares(WoodsClearings *c, uint32_t *at, bool put)
             for (int64_t i = from[0]; i < end[0]; i++) {
                 const double x_m = ((double)(c->i0 + i) + 0.5) * woods_square_m;
                 const double y_m = ((double)(c->j0 + j) + 0.5) * woods_square_m;
-                if (away_from(p, x_m, y_m) > p->half_m + 0.7072 * woods_square_m + reach_m) continue;
+                if (woods_path_away_m(p, x_m, y_m) > p->half_m + 0.7072 * woods_square_m + reach_m) continue;
                 if (put) c->item[at[j * c->nx + i]] = (uint32_t)n;
                 at[j * c->nx + i]++;
             }
@@ -76,7 +84,7 @@ bool woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double ro
     for (uint32_t k = c->first[n]; k < c->first[n + 1]; k++) {
         const WoodsPath *p = &c->path[c->item[k]];
         if (low && !(p->low_half_m > 0)) continue;
-        if (away_from(p, x_m, y_m) < (low ? p->low_half_m : p->half_m) + room_m) return true;
+        if (woods_path_away_m(p, x_m, y_m) < (low ? p->low_half_m : p->half_m) + room_m) return true;
     }
     return false;
 }

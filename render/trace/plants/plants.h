@@ -78,7 +78,8 @@ typedef struct Plants {
     PlantShade shade[PLANT_STANDING];       /* by forest_shade */
 } Plants;
 
-/* Grows all kinds: a pure function of the seed. 0.3 s of one processor. */
+/* Grows all kinds: a pure function of the seed, plants_seed in every world. 0.3 s of one processor. */
+static const uint64_t plants_seed = 1995;
 Status plants_create(Plants **out, uint64_t seed, Pool *pool);
 void   plants_destroy(Plants *plants);
 

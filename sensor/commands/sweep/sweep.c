@@ -42,11 +42,12 @@ static Status name_variant(char name[sweep_name_size], const Sweep *sweep, int n
 }
 
 /* Writes the command that reproduces the variant, with the options that are not settings but change the products. */
-static void write_again(FILE *file, const Options *o)
+static void write_again(FILE *file, const Options *o, const char *exercise)
 {
     char escaped[1024];
     fprintf(file, "# A variant of a sweep: what it sets is not commented out.\n"
-                  "# To reproduce: pitviper replay LOG --config THIS");
+                  "# To reproduce: pitviper replay %s%s%s --config THIS",
+            *exercise ? "exercises/" : "LOG", exercise, *exercise ? ".pcapng" : "");
     for (int i = 0; i < o->given_count; i++) {
         const OptionGiven *given = &o->given[i];
         if (given->same_products) continue;
@@ -58,12 +59,12 @@ static void write_again(FILE *file, const Options *o)
 
 /* Writes all settings as the text of settings.yaml, with its hash. */
 static Status settings_text_of(char **text, size_t *octets, char sha256[sha256_text_size], const Options *o,
-                               const Config *config)
+                               const Config *config, const char *exercise)
 {
     *text = NULL;
     FILE *file = open_memstream(text, octets);
     if (!file) return STATUS_NO_MEMORY;
-    write_again(file, o);
+    write_again(file, o, exercise);
     config_write_settings(file, config);
     return fclose(file) == 0 ? sha256_bytes(sha256, *text, *octets) : STATUS_NO_MEMORY;
 }
@@ -76,9 +77,11 @@ static Status try_variant(Variant *variant, const SweepRun *s)
     if (!run) return STATUS_NO_MEMORY;
     run->options = *s->options;
     Status status = sweep_config(&run->options.config, &s->sweep, &s->options->config, variant->number);
+    if (status == STATUS_OK) status = sweep_exercise(variant->exercise, &run->options.config, &s->sweep, variant->number);
     if (status == STATUS_OK) status = config_check(&run->options.config);
     if (status == STATUS_OK)
-        status = settings_text_of(&text, &octets, variant->settings_sha256, s->options, &run->options.config);
+        status = settings_text_of(&text, &octets, variant->settings_sha256, s->options, &run->options.config,
+                                  variant->exercise);
     free(text);
     if (status == STATUS_OK) status = run_prepare(run);
     if (status == STATUS_OK) {
@@ -133,7 +136,7 @@ static Status prepare(SweepRun *s)
                       of_one[i][0]);
             return STATUS_BAD_VALUE;
         }
-    Status status = sweep_read(&s->sweep, o->sweep, &o->config);
+    Status status = sweep_read_of(&s->sweep, o->sweep, &o->config, sweep_is_scenario(o->log) ? o->log : NULL);
     if (status != STATUS_OK) return status;
     s->variant = calloc((size_t)s->sweep.count, sizeof *s->variant);
     if (!s->variant) return STATUS_NO_MEMORY;
@@ -149,6 +152,7 @@ static Status prepare(SweepRun *s)
  * about it, the first variant stands for all. */
 static Status look_at_first(const SweepRun *s, SweepLook *look)
 {
+    if (s->sweep.scenario) return STATUS_OK;
     for (int i = 0; i < s->sweep.axis_count; i++)
         if (strncmp(s->sweep.axis[i].key, "exercise.", 9) == 0 || strcmp(s->sweep.axis[i].key, "sensor.rate_hz") == 0)
             return STATUS_OK;
@@ -164,10 +168,10 @@ static Status look_at_first(const SweepRun *s, SweepLook *look)
     return status;
 }
 
-static bool is_run(const VariantRun *run, const SweepRun *s, const Variant *v)
+static bool is_run(const VariantRun *run, const Variant *v)
 {
     return strcmp(run->version, PITVIPER_VERSION) == 0 && strcmp(run->config_sha256, v->config_sha256) == 0 &&
-           strcmp(run->log_sha256, s->log_sha256) == 0;
+           strcmp(run->log_sha256, v->log_sha256) == 0;
 }
 
 static bool read_run(VariantRun *out, const char *folder, const char *name)
@@ -193,7 +197,7 @@ static Status check_folders(const SweepRun *s)
         const Variant *v = &s->variant[i];
         VariantRun     run;
         snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name);
-        bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, s, v);
+        bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, v);
         variant_run_free(&run);
         /* these settings are not in config_sha256: time span and planes */
         if (!other && read_run(&run, folder, "variant.json")) {
@@ -210,10 +214,28 @@ static Status check_folders(const SweepRun *s)
     return status;
 }
 
+/* What a variant replays, and its hash; of an exercise that is still to be recorded there is none. */
+static Status note_log(SweepRun *s, Variant *v)
+{
+    if (!s->sweep.scenario) {
+        snprintf(v->log, sizeof v->log, "%s", s->options->log);
+        if (!*s->log_sha256) {
+            const Status status = sha256_file(s->log_sha256, s->options->log);
+            if (status != STATUS_OK) return status;
+        }
+        strcpy(v->log_sha256, s->log_sha256);
+        return STATUS_OK;
+    }
+    if (snprintf(v->log, sizeof v->log, "%s/exercises/%s.pcapng", s->options->out, v->exercise) >= (int)sizeof v->log)
+        return STATUS_BAD_VALUE;
+    return access(v->log, R_OK) == 0 ? sha256_file(v->log_sha256, v->log) : STATUS_OK;
+}
+
 static Status open_products(SweepRun *s)
 {
     const Options *o = s->options;
-    Status         status = sha256_file(s->log_sha256, o->log);
+    Status         status = STATUS_OK;
+    for (int i = 0; i < s->count && status == STATUS_OK; i++) status = note_log(s, &s->variant[i]);
     if (status == STATUS_OK) status = check_folders(s);
     if (status == STATUS_OK) status = frame_files_folder(o->out);
     if (status == STATUS_OK) status = output_hold("sweep", o->out);
@@ -225,12 +247,12 @@ static Status open_products(SweepRun *s)
 /* ---- one variant ------------------------------------------------------------------------------ */
 
 /* Whether the folder holds a complete run of these settings; its run.json is then in the outcome. */
-static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, bool coco)
+static bool is_kept(Outcome *outcome, const Variant *v, const char *folder, bool coco)
 {
     VariantRun variant, run;
-    const bool whole = read_run(&variant, folder, "variant.json") && is_run(&variant, s, v) &&
+    const bool whole = read_run(&variant, folder, "variant.json") && is_run(&variant, v) &&
                        strcmp(variant.settings_sha256, v->settings_sha256) == 0 && (!coco || has_coco(folder));
-    const bool kept = read_run(&run, folder, "run.json") && whole && is_run(&run, s, v) && run.complete;
+    const bool kept = read_run(&run, folder, "run.json") && whole && is_run(&run, v) && run.complete;
     variant_run_free(&variant);
     if (kept) *outcome = (Outcome){.status = "kept", .has_run = true, .run = run};
     else variant_run_free(&run);
@@ -247,14 +269,20 @@ static Status write_file(const char *path, const char *text, size_t octets)
 }
 
 /* Has the variant made. Returns its exit code; -1: ended by a signal, or not started. */
-static int run_variant(SweepRun *s, const char *folder)
+static int run_variant(SweepRun *s, const Variant *v, const char *folder)
 {
+    Options    *o = malloc(sizeof *o);
     char        settings[path_size + 32], said[path_size + 32];
     const char *argv[options_variant_argv];
     snprintf(settings, sizeof settings, "%s/settings.yaml", folder);
     snprintf(said, sizeof said, "%s/log.txt", folder);
-    options_variant(argv, s->options, settings, folder);
-    return sweep_worker_make(&s->worker, said, argv);
+    if (!o) return -1;
+    *o = *s->options;
+    o->log = v->log;
+    options_variant(argv, o, settings, folder);
+    const int code = sweep_worker_make(&s->worker, said, argv);
+    free(o);
+    return code;
 }
 
 /* Finds the last error that the run logged. */
@@ -282,13 +310,13 @@ static Status write_settings(const char *path, const Options *o, const Variant *
     char    sha256[sha256_text_size], *text = NULL, *again = NULL;
     size_t  octets;
     Config *back = malloc(sizeof *back);
-    Status  status = back ? settings_text_of(&text, &octets, sha256, o, config) : STATUS_NO_MEMORY;
+    Status  status = back ? settings_text_of(&text, &octets, sha256, o, config, v->exercise) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         *back = config_default();
         status = write_file(path, text, octets);
     }
     if (status == STATUS_OK) status = config_read(back, path);
-    if (status == STATUS_OK) status = settings_text_of(&again, &octets, sha256, o, back);
+    if (status == STATUS_OK) status = settings_text_of(&again, &octets, sha256, o, back, v->exercise);
     if (status == STATUS_OK && strcmp(sha256, v->settings_sha256) != 0) {
         const char *key = config_difference(config, back);
         log_error("sweep: %s: %s: a configuration file cannot hold this value (it does not read back equal); choose "
@@ -318,24 +346,35 @@ static void make_variant(Outcome *outcome, SweepRun *s, const Variant *v, const 
         return;
     }
     const double begun_s = wall_clock_s();
-    const int    code = run_variant(s, folder);
+    const int    code = run_variant(s, v, folder);
     outcome->seconds = wall_clock_s() - begun_s;
     outcome->has_run = code == 0 && read_run(&outcome->run, folder, "run.json");
     if (stop_asked() && code != 0) {
         *outcome = (Outcome){.status = "stopped", .seconds = outcome->seconds};
         return;
     }
-    if (outcome->has_run && is_run(&outcome->run, s, v)) outcome->status = "made";
+    if (outcome->has_run && is_run(&outcome->run, v)) outcome->status = "made";
     else if (code == 0) snprintf(outcome->why, sizeof outcome->why, "run.json is not of these settings and this log");
     else find_reason(outcome->why, sizeof outcome->why, folder, code);
 }
 
 /* Runs the variant, or keeps the run in its folder. */
-static Status make_or_keep(Outcome *outcome, SweepRun *s, const Variant *v, const char *folder)
+static Status make_or_keep(Outcome *outcome, SweepRun *s, Variant *v, const char *folder)
 {
     Config *config = malloc(sizeof *config);
     Status  status = config ? sweep_config(config, &s->sweep, &s->options->config, v->number) : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && !is_kept(outcome, s, v, folder, config->publish.coco))
+    if (status == STATUS_OK) status = sweep_exercise(v->exercise, config, &s->sweep, v->number);
+    if (status == STATUS_OK && s->sweep.scenario && !*v->log_sha256) {
+        status = sweep_exercise_need(v->log, sizeof v->log, s->options->out, v->exercise, config, &s->sweep, v->number);
+        if (status == STATUS_OK) status = sha256_file(v->log_sha256, v->log);
+        if (status == STATUS_BAD_VALUE) { /* of this variant alone */
+            *outcome = (Outcome){.status = "failed"};
+            snprintf(outcome->why, sizeof outcome->why, "its exercise cannot be made: exercises/%s.txt", v->exercise);
+            free(config);
+            return STATUS_OK;
+        }
+    }
+    if (status == STATUS_OK && !is_kept(outcome, v, folder, config->publish.coco))
         make_variant(outcome, s, v, folder, config);
     free(config);
     return status;
@@ -343,9 +382,9 @@ static Status make_or_keep(Outcome *outcome, SweepRun *s, const Variant *v, cons
 
 static Status one_variant(SweepRun *s, int place)
 {
-    const Variant *v = &s->variant[place];
-    char           folder[path_size], path[path_size + 32];
-    Outcome        outcome;
+    Variant *v = &s->variant[place];
+    char     folder[path_size], path[path_size + 32];
+    Outcome  outcome;
     if (snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name) >= (int)sizeof folder)
         return STATUS_BAD_VALUE;
     Status status = make_or_keep(&outcome, s, v, folder);

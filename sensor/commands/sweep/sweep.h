@@ -8,6 +8,7 @@
  *         coco.json          with publish.coco
  *     OUT/manifest.jsonl     a line per variant: status made, kept or failed, settings, folder, hashes of its frames
  *     OUT/manifest.html      thumbnails and settings
+ *     OUT/exercises/         recordings, where a scenario is replayed
  *     OUT/coco.json          of all variants that have one (sensor/publish/coco/coco_file.h)
  *
  * A variant is a run with the given options and the values of the axes over them: settings are passed in
@@ -56,7 +57,16 @@ extern const FieldTable variant_fields; /* a line of manifest.jsonl */
  *       exercise.utc: [2026-06-21T10:00:00Z, 2026-12-21T17:00:00Z]
  *       seed: 7                           # one value for all
  *
- * Any key of `pitviper check --default`. Names of files are relative to the sweep's. Every value is validated before
+ * Any key of `pitviper check --default`. Where a scenario is replayed in place of a recording, `replay SCENARIO.yaml
+ * --sweep FILE`, also any key of `pitviper exercise --keys`, and of vehicles by their name:
+ *
+ *       scenario.seed: [1, 2, 3]
+ *       scenario.vehicles.Tank.type: [tank, truck]
+ *       scenario.vehicles.Tank.route_m: ["-400,-300", "200,100"]
+ *
+ * Each of the exercises that they make is recorded once, OUT/exercises/eXXXXXXXXXX.pcapng, with the table of what hides
+ * in it. Where the scenario has ground.invented, its seed, relief and spacing are those of the variant, and the
+ * variant's terrain.place is that of the scenario. Names of files are relative to the sweep's. Every value is validated before
  * the first run; an error is one logged line with file, line, key, value and range. */
 enum { sweep_variants_max = 10000, sweep_axes_max = 64, sweep_value_size = 1024 };
 
@@ -74,6 +84,7 @@ typedef struct SweepAxis {
 } SweepAxis;
 
 typedef struct Sweep {
+    const char *scenario; /* borrowed: what is replayed, where that is no recording; NULL: a recording */
     const char *path; /* borrowed: paths of its values are relative to its folder */
     SweepMode   mode;
     int         count, axis_count; /* count: of variants */
@@ -85,6 +96,8 @@ typedef struct Sweep {
 
 /* base: settings on which the values are validated. On failure *out is empty. */
 Status sweep_read(Sweep *out, const char *path, const Config *base);
+/* The same of a scenario; scenario NULL: of a recording. */
+Status sweep_read_of(Sweep *out, const char *path, const Config *base, const char *scenario);
 void   sweep_close(Sweep *sweep);
 /* As on a command line. */
 void sweep_value(char out[sweep_value_size], const Sweep *sweep, int variant, int axis);

@@ -42,7 +42,7 @@ static Status count_kinds(SweepAxis *axis)
         return STATUS_OK;
     }
     Listed    *listed = calloc((size_t)axis->count, sizeof *listed);
-    const bool number = config_kind(axis->key) != CONFIG_WORD;
+    const bool number = sweep_key_kind(axis->key) != CONFIG_WORD;
     axis->kind_of = calloc((size_t)axis->count, sizeof *axis->kind_of);
     axis->first_of = calloc((size_t)axis->count, sizeof *axis->first_of);
     if (!listed || !axis->kind_of || !axis->first_of) {

@@ -33,6 +33,7 @@ static Status try_value(const Reading *r, const char *key, const char *value, in
     char   source[512];
     Config tried = *r->base;
     snprintf(source, sizeof source, "%s:%d", r->path, line);
+    if (sweep_scenario_key(key)) return sweep_scenario_try(r->sweep->scenario, key, value, source);
     return config_set_from(&tried, key, value, source, r->path);
 }
 
@@ -55,7 +56,7 @@ static Status add_value(SweepAxis *axis, const Reading *r, const yaml_node_t *no
     char        list[sweep_value_size];
     const char *value = list;
     if (node->type == YAML_SCALAR_NODE) value = text_of(node);
-    else if (!join(list, r, node) || !config_takes_list(axis->key))
+    else if (!join(list, r, node) || !(sweep_scenario_key(axis->key) || config_takes_list(axis->key)))
         return refuse(r, node, axis->key,
                       "needs single values, or lists of words where the key takes a list: [[optical, lwir], [lwir]]");
     const Status status = try_value(r, axis->key, value, line_of(node));
@@ -71,7 +72,7 @@ static Status read_range(SweepAxis *axis, const Reading *r, const yaml_node_t *n
 {
     const char *form = "needs a list of values, or {from: LOW, to: HIGH}";
     bool        from = false, to = false;
-    if (config_kind(axis->key) == CONFIG_WORD)
+    if (sweep_key_kind(axis->key) == CONFIG_WORD)
         return refuse(r, node, axis->key,
                       "is not a number; only lists of "
                       "values");
@@ -94,7 +95,7 @@ static Status read_range(SweepAxis *axis, const Reading *r, const yaml_node_t *n
                       "only `mode: random` draws between from and "
                       "to");
     if (!(axis->low <= axis->high)) return refuse(r, node, axis->key, "from is above to");
-    axis->whole = config_kind(axis->key) == CONFIG_WHOLE;
+    axis->whole = sweep_key_kind(axis->key) == CONFIG_WHOLE;
     return STATUS_OK;
 }
 
@@ -104,7 +105,7 @@ static Status read_axis(const Reading *r, const char *key, const yaml_node_t *na
     for (int i = 0; i < sweep->axis_count; i++)
         if (strcmp(sweep->axis[i].key, key) == 0) return refuse(r, name, key, "is given twice");
     if (sweep->axis_count == sweep_axes_max) return refuse(r, name, key, "is the 65th axis; at most 64");
-    if (config_kind(key) == CONFIG_NONE) return try_value(r, key, "", line_of(name)); /* names the nearest */
+    if (sweep_key_kind(key) == CONFIG_NONE) return try_value(r, key, "", line_of(name)); /* names the nearest */
 
     SweepAxis *axis = &sweep->axis[sweep->axis_count];
     *axis = (SweepAxis){.line = line_of(name)};
@@ -137,7 +138,7 @@ static Status read_axes(const Reading *r, const char *section, const yaml_node_t
         if (name->type != YAML_SCALAR_NODE) return refuse(r, name, "axes", "a key must be a word");
         if ((size_t)snprintf(key, sizeof key, "%s%s%s", section, *section ? "." : "", text_of(name)) >= sizeof key)
             return refuse(r, name, "axes", "unknown key: too long");
-        const bool   below = !*section && node->type == YAML_MAPPING_NODE && config_kind(key) == CONFIG_NONE;
+        const bool   below = !*section && node->type == YAML_MAPPING_NODE && sweep_key_kind(key) == CONFIG_NONE;
         const Status status = below ? read_axes(r, key, node) : read_axis(r, key, name, node);
         if (status != STATUS_OK) return status;
     }
@@ -264,12 +265,14 @@ static Status parse(Reading *r, const char *text, size_t octets)
     return status;
 }
 
-Status sweep_read(Sweep *out, const char *path, const Config *base)
+Status sweep_read(Sweep *out, const char *path, const Config *base) { return sweep_read_of(out, path, base, NULL); }
+
+Status sweep_read_of(Sweep *out, const char *path, const Config *base, const char *scenario)
 {
     char   *text;
     size_t  octets;
     Reading reading = {.path = path, .base = base, .sweep = out};
-    *out = (Sweep){.path = path, .draw = 1};
+    *out = (Sweep){.scenario = scenario, .path = path, .draw = 1};
     Status status = text_read_file(&text, &octets, "sweep", path, settings_file_octets);
     if (status != STATUS_OK) return status;
     status = parse(&reading, text, octets);
@@ -313,6 +316,7 @@ Status sweep_config(Config *out, const Sweep *sweep, const Config *base, int var
     Status status = STATUS_OK;
     *out = *base;
     for (int i = 0; i < sweep->axis_count && status == STATUS_OK; i++) {
+        if (sweep_scenario_key(sweep->axis[i].key)) continue;
         sweep_value(value, sweep, variant, i);
         snprintf(source, sizeof source, "variant %d", variant + 1);
         status = config_set_from(out, sweep->axis[i].key, value, source, sweep->path);

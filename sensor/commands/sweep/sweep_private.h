@@ -34,9 +34,28 @@ void variant_run_free(VariantRun *run);
 Status sweep_draw(Sweep *sweep, const char *path);
 void   sweep_drawn_value(char out[sweep_value_size], const Sweep *sweep, int draw, int axis);
 
+/* ---- axes of a scenario (sweep_scenario.c) ----------------------------------------------------------- */
+
+enum { sweep_name_size = 16 /* of variants and exercises */ };
+
+/* Whether a key is of a scenario: `scenario.seed`. */
+bool sweep_scenario_key(const char *key);
+/* As config_kind, of keys of a scenario too. */
+ConfigKind sweep_key_kind(const char *key);
+/* Whether a scenario takes this value; logged. scenario NULL: there is none. */
+Status sweep_scenario_try(const char *scenario, const char *key, const char *value, const char *source);
+/* Whether what is to be replayed is the file of a scenario, by its name. */
+bool sweep_is_scenario(const char *path);
+/* The exercise of a variant: a name of it, by the scenario's octets, its axes and the variant's ground. The ground's
+ * place goes into the variant's settings. Without a scenario: an empty name. */
+Status sweep_exercise(char name[sweep_name_size], Config *config, const Sweep *sweep, int variant);
+/* Its recording: OUT/exercises/NAME.pcapng, which is made where it is not there, with the table of places beside it. */
+Status sweep_exercise_need(char *path, size_t size, const char *out, const char *name, const Config *config,
+                           const Sweep *sweep, int variant);
+
 /* ---- a sweep while it runs -------------------------------------------------------------------------- */
 
-enum { sweep_name_size = 16, sweep_words_size = 4096 };
+enum { sweep_words_size = 4096, sweep_path_size = 4300 };
 
 /* manifest.html: the thumbnail of each variant (vXXXXXXXXXX/thumbnail.png), its bands side by side, and its settings.
  * Written as variants end; renamed into place when complete. */
@@ -49,6 +68,9 @@ typedef struct Variant {
     int  number; /* in the file, 0 is the first */
     char name[sweep_name_size];
     char config_sha256[sha256_text_size];
+    char exercise[sweep_name_size];         /* of a scenario; "": a recording is replayed */
+    char log[sweep_path_size];              /* what it replays */
+    char log_sha256[sha256_text_size];      /* "": not made yet */
     char settings_sha256[sha256_text_size]; /* of its settings.yaml: equal ones are the same run */
 } Variant;
 

@@ -94,6 +94,8 @@ static const Field variant_rows[] = {
     {"number", "", "from 1", "", "its position in the sweep", OF_LINE(number)},
     {"status", "", "", "", "`made`; `kept`: complete from an earlier run; `failed`", OF_LINE(status)},
     {"settings", "", "", "", "settings of the axes", .get = settings, FIELD_OBJECT(key_rows)},
+    {"exercise", "", "", "when a recording was replayed", "name of its recording in exercises/", IN_VARIANT(exercise),
+     .unless_empty = true},
     {"config_sha256", "", "", "", "as in its run.json", IN_VARIANT(config_sha256)},
     {"settings_sha256", "", "", "", "SHA-256 of its settings.yaml", IN_VARIANT(settings_sha256)},
     {"log_sha256", "", "", "", "SHA-256 of the log's octets", OF_LINE(log_sha256)},
@@ -116,7 +118,7 @@ char *sweep_manifest_line(const SweepRun *s, const Variant *v, const Outcome *ou
                               outcome->seconds > 0 ? outcome->seconds : NAN,
                               outcome->status,
                               outcome->why,
-                              s->log_sha256,
+                              v->log_sha256,
                               PITVIPER_VERSION};
     return field_line(&variant_fields, &line, 6);
 }

@@ -65,6 +65,8 @@ void choice_report_night(Choices *choices, unsigned bands, double unix_s, const 
  * Aims of one cell, and all hosts with them, have one world, which reaches some km beyond. */
 static const double choice_cell_m = 4000;
 Status              choice_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
+/* The same; with terrain.place that of its ground, whatever the exercise. */
+Status choice_world_frame(LocalFrame *out, const Survey *survey, const Config *config, const HostPlan *plan);
 /* Where the aim, else the host is at the end of the plan, on the ellipsoid. False: neither was heard. */
 bool choice_aim_place(double p_ecef[3], const Survey *survey, const HostPlan *plan);
 /* Builds the models of all types in the survey, so that no frame waits for one, and reports each type once when it
@@ -98,6 +100,10 @@ typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_INCONSISTENT, G
  * ground_evidence_private.h). contact: which entities are clamped to it (terrain.ground), later ones too. */
 Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, const ChoiceBasis *basis,
                      const LocalFrame *frame);
+/* With terrain.place: the ground, which follows from no exercise, and what an exercise is to it. */
+Status choice_placed_ground(Landscape *out, const Config *config, Cache *cache);
+Status choice_placed_contact(GroundContact *contact, Choices *choices, const ChoiceBasis *basis,
+                             const Landscape *landscape);
 /* Reports an aim under water, which is not visible from above it. */
 void choice_report_submerged(Choices *choices, const Survey *survey, const GroundEvidence *evidence,
                              const HostPlan *plan);
@@ -110,7 +116,9 @@ Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *confi
  *
  * On invented ground no stem stands within what drove on the ground, where a burst hit it, or where a flight or the
  * line of sight of a shot that hit passes low, as far as the log tells that the world is made from; nothing else of the
- * ground and its plants follows from a path. Real trees stay; entities that begin within a trunk are counted. */
+ * ground and its plants follows from a path. On ground of terrain.place, whose plants the exercise was placed among,
+ * what stands has its own footprint and half a metre. Real trees stay; entities that begin within a trunk are counted.
+ */
 typedef struct WoodsChoice {
     bool        on; /* terrain.woods */
     WoodsConfig config;

@@ -7,6 +7,7 @@
 #include "terrain/elevation/raster.h"
 #include "terrain/import/terrain_import.h"
 #include "terrain/from_files/elevation_import.h"
+#include "terrain/ground/placed.h"
 #include "terrain/store/store.h"
 
 #include <stdlib.h>
@@ -177,15 +178,29 @@ static void report_synthetic(Choices *choices, const Landscape *landscape, const
                    landscape->fixes_dropped, e->said.fix_count);
 }
 
-static Status invent(Landscape *out, const ChoiceBasis *basis, const LocalFrame *frame)
+static LandscapeConfig land_of(const Config *config)
 {
-    const Config         *config = basis->config;
-    const GroundEvidence *e = basis->evidence;
-    LandscapeConfig       land = landscape_default_config();
+    LandscapeConfig land = landscape_default_config();
     land.seed = (uint64_t)config->seed;
     land.relief_m = config->terrain.relief_m;
     if (config->terrain.spacing_m > 0) land.spacing_m = config->terrain.spacing_m;
-    const Status status = landscape_create_kept(out, &land, frame, &e->said, basis->cache);
+    return land;
+}
+
+static Status invent(Landscape *out, const ChoiceBasis *basis, const LocalFrame *frame)
+{
+    const LandscapeConfig land = land_of(basis->config);
+    const Status          status = landscape_create_kept(out, &land, frame, &basis->evidence->said, basis->cache);
+    if (status != STATUS_OK) log_error("replay: no landscape could be made: %s", status_name(status));
+    return status;
+}
+
+Status choice_placed_ground(Landscape *out, const Config *config, Cache *cache)
+{
+    const LandscapeConfig land = land_of(config);
+    Geodetic              place;
+    Status                status = STATUS_BAD_VALUE;
+    if (landscape_place_parse(&place, config->terrain.place)) status = landscape_placed(out, &land, &place, cache);
     if (status != STATUS_OK) log_error("replay: no landscape could be made: %s", status_name(status));
     return status;
 }
@@ -415,4 +430,15 @@ Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, c
         status = report_contact(choices, set == GROUND_CONTACT_ALL, out, survey, e);
     if (status == STATUS_OK) *contact = set;
     return status;
+}
+
+Status choice_placed_contact(GroundContact *contact, Choices *choices, const ChoiceBasis *basis,
+                             const Landscape *landscape)
+{
+    const Config *config = basis->config;
+    *contact = config->terrain.ground == TERRAIN_GROUND_TRUST ? GROUND_CONTACT_NONE : GROUND_CONTACT_ALL;
+    choice_add(choices, "ground: invented by seed %lld and place %s, whatever the exercise (terrain.place, seed)",
+               config->seed, config->terrain.place);
+    report_sea(choices, basis->evidence);
+    return report_contact(choices, *contact == GROUND_CONTACT_ALL, landscape, basis->survey, basis->evidence);
 }

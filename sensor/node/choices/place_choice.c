@@ -2,6 +2,8 @@
  * a grid of cells lies about the middle of what the recording holds, and all aims of one cell have one world. */
 #include "sensor/node/choices/choices.h"
 
+#include "terrain/ground/placed.h"
+
 #include <stdlib.h>
 
 /* Where entities were at their first and last reports: of those on land, else of all; on the ellipsoid. */
@@ -133,4 +135,11 @@ Status choice_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan)
     if (status == STATUS_OK) status = origin_of(out, &places, &grid, cell);
     free(places.p_ecef);
     return status;
+}
+
+Status choice_world_frame(LocalFrame *out, const Survey *survey, const Config *config, const HostPlan *plan)
+{
+    Geodetic place;
+    if (!*config->terrain.place) return choice_frame(out, survey, plan);
+    return landscape_place_parse(&place, config->terrain.place) ? landscape_place_frame(out, &place) : STATUS_BAD_VALUE;
 }

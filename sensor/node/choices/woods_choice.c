@@ -36,7 +36,7 @@ Status choice_square(WoodsSquare *out, const Survey *survey, const Config *confi
     static const double sight_m = 4000, far_m = 12000, least_m = 50, most_m = 50000, first_m = 1000;
     LocalFrame          world;
     double              p_ecef[3], p_enu[3], reach_m = 0, step_m = first_m;
-    const Status        status = choice_frame(&world, survey, plan);
+    const Status        status = choice_world_frame(&world, survey, config, plan);
     if (status != STATUS_OK) return status;
     const bool own = config->terrain.woods_half_m >= least_m && choice_aim_place(p_ecef, survey, plan);
     enu_from_ecef(p_enu, frame, own ? p_ecef : world.origin_ecef);
@@ -97,6 +97,7 @@ typedef struct Paths {
     int                count, capacity;
     const WoodsConfig *square;
     const Landscape   *landscape;
+    bool               placed; /* the exercise was placed among these plants */
     bool               no_memory;
 } Paths;
 
@@ -126,6 +127,27 @@ static void add_path(Paths *p, const double a_m[2], const double b_m[2], double 
  * cleared is no wider than that, and grass and crops stay: a path still to come must not show (test_no_prophecy.c). */
 static const double path_room_m = 0.25;
 static double       half_of(const Model *model) { return 0.5 * model->width_m + path_room_m; }
+
+/* Its footprint with half a metre about it, where it stands at all of its reports. False: it does not. */
+static bool add_standing(Paths *p, const Track *track, const bool *fixed, const Model *model)
+{
+    static const double still_m = 1;
+    double              first[3] = {0}, here[3], r_ecef_from_body[9], nose_ecef[3], nose_enu[3];
+    for (int n = 0; n < track->count; n++) {
+        if (!fixed[n]) return false;
+        enu_of(here, p->landscape, track->point[n].p_ecef);
+        if (n == 0) memcpy(first, here, sizeof first);
+        if (hypot(here[0] - first[0], here[1] - first[1]) > still_m) return false;
+    }
+    if (track->count == 0) return false;
+    survey_point_rotation(r_ecef_from_body, &track->point[0]);
+    for (int k = 0; k < 3; k++) nose_ecef[k] = r_ecef_from_body[3 * k];
+    m3_tmul_v3(nose_enu, p->landscape->frame.r_ecef_from_enu, nose_ecef);
+    const WoodsPath path =
+        woods_footprint(first, nose_enu, model->box_high[0], model->box_low[0], model->width_m);
+    add_path(p, path.a_m, path.b_m, path.half_m, path.low_half_m);
+    return true;
+}
 
 /* From report to report on the ground. The pieces between are straight: a report in less than step_m of the last that
  * was taken is within its path. Reports that no drive joins are places; there, and at both ends, it is as long as wide. */
@@ -178,8 +200,9 @@ static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalo
         const Track *track = &survey->track[t];
         const Model *model = catalog_model(catalog, catalog_find(catalog, track->type, NULL, NULL));
         const bool  *fixed = e->fixed + e->first[t];
-        if (e->stance[t] == STANCE_GROUND || e->stance[t] == STANCE_LANDED)
-            add_track(p, track, fixed, model);
+        if (e->stance[t] != STANCE_GROUND && e->stance[t] != STANCE_LANDED) continue;
+        if (p->placed && add_standing(p, track, fixed, model)) continue;
+        add_track(p, track, fixed, model);
     }
     for (int i = 0; i < e->said.line_count && !p->no_memory; i++) add_line(p, &e->said.line[i]);
     for (int i = 0; i < survey->shot_count; i++) {
@@ -299,7 +322,7 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
                                 .cache = real ? NULL : basis->cache, /* files may change and keep their names */
                                 .culture = culture->index ? culture : NULL,
                                 .follows = basis->follows};
-    Paths paths = {.square = &out->config, .landscape = landscape};
+    Paths paths = {.square = &out->config, .landscape = landscape, .placed = *config->terrain.place != 0};
     if (!real) add_known(&paths, &impacts, survey, catalog, e);
     out->path = paths.path;
     out->config.path = paths.path;

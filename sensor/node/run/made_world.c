@@ -78,16 +78,22 @@ static void take_down(MadeWorld *m, MadeLayer layer)
     m->said[layer].count = 0;
 }
 
-/* Takes down a layer and all that stand on it. */
+/* Takes down a layer and all that stand on it. The catalog of models follows from neither log nor survey, and stays;
+ * ground of a place does too. */
 static void take_down_from(MadeWorld *m, MadeLayer layer)
 {
-    for (int at = MADE_LAYERS - 1; at >= (int)layer; at--) take_down(m, (MadeLayer)at);
+    const bool placed = *m->key[MADE_GROUND] && *m->part[MADE_GROUND].terrain.place;
+    for (int at = MADE_LAYERS - 1; at >= (int)layer; at--) {
+        const bool stays = layer < MADE_CATALOG && (at == MADE_CATALOG || (at == MADE_GROUND && placed));
+        if (!stays) take_down(m, (MadeLayer)at);
+    }
 }
 
 void made_world_destroy(MadeWorld *m)
 {
     if (!m) return;
     take_down_from(m, MADE_LOG);
+    take_down_from(m, MADE_CATALOG);
     pool_destroy(m->pool);
     cache_close(m->cache);
     free(m);
@@ -308,13 +314,22 @@ static void add_frame(Key *key, const LocalFrame *frame)
 
 static Status need_ground(MadeWorld *m, const MadeOf *of, const GroundEvidence *evidence)
 {
-    char    key_text[sha256_text_size];
-    Config *part = &m->part[MADE_GROUND];
-    Key     key = key_of(part, MADE_GROUND, of->config);
+    char       key_text[sha256_text_size];
+    Config    *part = &m->part[MADE_GROUND];
+    Key        key = key_of(part, MADE_GROUND, of->config);
+    const bool placed = *part->terrain.place;
     add_frame(&key, of->frame);
-    key.good = key.good && *m->key[MADE_CATALOG] && choice_evidence_hash(key.digest, evidence);
-    if (is_there(key_text, m, MADE_GROUND, &key)) return STATUS_OK;
+    key.good = key.good && *m->key[MADE_CATALOG] && (placed || choice_evidence_hash(key.digest, evidence));
+    const bool        there = is_there(key_text, m, MADE_GROUND, &key);
     const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, evidence, m->cache, NULL};
+    if (placed) {
+        const Status status =
+            there ? STATUS_OK : done(m, MADE_GROUND, key_text, choice_placed_ground(&m->landscape, part, m->cache));
+        m->said[MADE_GROUND].count = 0; /* what is said of the exercise is another with each log */
+        if (status != STATUS_OK) return status;
+        return choice_placed_contact(&m->contact, &m->said[MADE_GROUND], &basis, &m->landscape);
+    }
+    if (there) return STATUS_OK;
     return done(m, MADE_GROUND, key_text,
                 choice_ground(&m->landscape, &m->contact, &m->said[MADE_GROUND], &basis, of->frame));
 }

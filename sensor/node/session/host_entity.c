@@ -2,6 +2,7 @@
 #include "sensor/node/session/session_private.h"
 
 #include "dis/pdu/pdu.h"
+#include "sensor/node/session/aim_error.h"
 #include "sensor/node/session/seeker_private.h"
 
 #include <stdio.h>
@@ -197,6 +198,16 @@ static void host_tick(HostMotion *motion, double t_s)
     report_limit(h, t_s);
 }
 
+/* The camera at a time, which misses the aim. */
+static void pointed(double r_enu_from_cam[9], const EntityHost *h, const Seeker *seeker,
+                    const double r_enu_from_mount[9], double t_s)
+{
+    double tangent[2];
+    seeker_camera(r_enu_from_cam, seeker, r_enu_from_mount);
+    aim_error_at(tangent, h->s->shared->config, h->s->plan.host, t_s);
+    aim_error_turn(r_enu_from_cam, tangent);
+}
+
 /* Computes the camera's rotation and the sensor's motion from its position a tick later. */
 static void camera_motion(Eye *eye, EntityHost *h, const Mounted *now, double t_s)
 {
@@ -213,7 +224,7 @@ static void camera_motion(Eye *eye, EntityHost *h, const Mounted *now, double t_
     if (!session_aim_at(p_aim_ecef, h->s, t_s + step_s)) memcpy(p_aim_ecef, h->s->p_aim_ecef, sizeof p_aim_ecef);
     if (!past_impact(h)) turn_gimbal(&seeker, h, &next, p_aim_ecef);
     enu_axes(r_enu_from_mount, h, &next);
-    seeker_camera(r_next, &seeker, r_enu_from_mount);
+    pointed(r_next, h, &seeker, r_enu_from_mount, t_s + step_s);
     seeker_turn_rate(eye->w_cam_rps, eye->view.r_enu_from_cam, r_next, step_s);
 }
 
@@ -237,7 +248,7 @@ static bool host_eye(Eye *eye, HostMotion *motion, Snapshot *snapshot, double t_
     enu_axes(r_enu_from_mount, h, &at);
     memcpy(eye->state.p_ecef, at.p_ecef, sizeof eye->state.p_ecef);
     memcpy(eye->r_ecef_from_body, host->r_ecef_from_body, sizeof eye->r_ecef_from_body);
-    seeker_camera(eye->view.r_enu_from_cam, &h->seeker, r_enu_from_mount);
+    pointed(eye->view.r_enu_from_cam, h, &h->seeker, r_enu_from_mount, t_s);
     camera_motion(eye, h, &at, t_s);
     eye->hidden = eye->state.host_index = index;
     eye->at_limit = h->seeker.at_limit;

@@ -2,6 +2,7 @@
 #include "sensor/node/session/session_private.h"
 
 #include "sensor/node/choices/choices.h"
+#include "sensor/node/session/aim_error.h"
 
 #include <stdlib.h>
 
@@ -35,14 +36,17 @@ static void observer_position(double p_ecef[3], double aim_about[3], const Obser
 
 /* False: it is where it looks. */
 static bool observer_camera(double r_enu_from_cam[9], const double p_ecef[3], const double aim_about[3],
-                            const Observer *o)
+                            const Observer *o, double t_s)
 {
-    double p_about[3], d_about[3], r_about_from_cam[9], r_enu_from_about[9];
+    const Session *s = o->motion.s;
+    double         p_about[3], d_about[3], r_about_from_cam[9], r_enu_from_about[9], tangent[2];
     enu_from_ecef(p_about, &o->about, p_ecef);
     v3_sub(d_about, aim_about, p_about);
     view_upright(r_about_from_cam, d_about);
-    m3_tmul(r_enu_from_about, o->motion.s->shared->world->frame.r_ecef_from_enu, o->about.r_ecef_from_enu);
+    m3_tmul(r_enu_from_about, s->shared->world->frame.r_ecef_from_enu, o->about.r_ecef_from_enu);
     m3_mul(r_enu_from_cam, r_enu_from_about, r_about_from_cam);
+    aim_error_at(tangent, s->shared->config, s->plan.aim, t_s);
+    aim_error_turn(r_enu_from_cam, tangent);
     return v3_length(d_about) > 0;
 }
 
@@ -54,13 +58,13 @@ static bool observer_eye(Eye *eye, HostMotion *motion, Snapshot *snapshot, doubl
     const Observer     *o = (const Observer *)motion;
     double              before_ecef[3], after_ecef[3], aim_about[3], r_before[9], r_after[9];
     observer_position(before_ecef, aim_about, o, t_s - half_s);
-    observer_camera(r_before, before_ecef, aim_about, o);
+    observer_camera(r_before, before_ecef, aim_about, o, t_s - half_s);
     observer_position(after_ecef, aim_about, o, t_s + half_s);
-    observer_camera(r_after, after_ecef, aim_about, o);
+    observer_camera(r_after, after_ecef, aim_about, o, t_s + half_s);
     seeker_turn_rate(eye->w_cam_rps, r_before, r_after, 2 * half_s);
     observer_position(eye->state.p_ecef, aim_about, o, t_s);
     for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] = (after_ecef[k] - before_ecef[k]) / (2 * half_s);
-    if (!observer_camera(eye->view.r_enu_from_cam, eye->state.p_ecef, aim_about, o)) return false;
+    if (!observer_camera(eye->view.r_enu_from_cam, eye->state.p_ecef, aim_about, o, t_s)) return false;
     eye->hidden = eye->state.host_index = -1;
     eye->aim_known = true;
     memcpy(eye->p_aim_ecef, s->p_aim_ecef, sizeof eye->p_aim_ecef);

@@ -23,7 +23,7 @@ static Status write_settings(char **text, const Config *config)
     Config plain = *config;
     size_t octets;
     *plain.terrain.elevation = *plain.terrain.cover = *plain.terrain.cover_table = *plain.terrain.orthophoto = 0;
-    *plain.terrain.store = 0;
+    *plain.terrain.store = *plain.terrain.place = 0;
     *plain.terrain.geoid = *plain.record.path = *plain.quality.table = 0;
     FILE *to = open_memstream(text, &octets);
     if (!to) return STATUS_NO_MEMORY;

@@ -1,0 +1,94 @@
+/* entities/exercise/hide_private.h: where entities hide: among the plants of an invented ground, which the node that
+ * shows them makes alike (terrain/ground/placed.h).
+ *
+ * Candidates about a place are drawn by the seed. Of those where the ground bears a vehicle, no plant has to be cleared
+ * for it, and the surroundings are of the kind asked for, an estimate ranks how near each comes to the planned
+ * occlusion: crowns as cylinders of a density, a slice of the height each (hide_sight.c). Of the nearest some are
+ * judged by rays against the plants themselves, where the caller has a tracer (HideJudge), and the nearest of these is
+ * taken. */
+#ifndef ENTITIES_EXERCISE_HIDE_PRIVATE_H
+#define ENTITIES_EXERCISE_HIDE_PRIVATE_H
+
+#include "entities/exercise/hide_judge.h"
+#include "entities/exercise/scenario.h"
+#include "entities/models/model.h"
+
+/* The plants of a ground near a place, and what else of it a hide asks for. */
+typedef struct HideGround {
+    const Landscape *landscape;
+    Woods            woods;
+    const HideJudge *judge; /* begun with these woods; NULL: there is none */
+} HideGround;
+
+/* About a place of the landscape's ENU; half_m: how far plants are known. */
+Status hide_ground_open(HideGround *out, const Landscape *landscape, uint64_t seed, const double about_m[2],
+                        double half_m, const HideJudge *judge);
+void   hide_ground_close(HideGround *ground); /* accepts zeroes */
+
+/* The triangles of a model at rest. */
+typedef struct HideShape {
+    const Model *model;
+    int          count;
+    double       radius_m;
+    double (*corner)[3][3]; /* [count], body axes */
+} HideShape;
+Status hide_shape_open(HideShape *out, const Model *model);
+void   hide_shape_close(HideShape *shape); /* accepts zeroes */
+
+/* Something solid that hides what stands behind it. */
+typedef struct HideBox {
+    double    p_enu[3], nose[2]; /* of its origin; unit, level */
+    HideShape shape;
+} HideBox;
+
+/* Where an entity stands, of the landscape's ENU. */
+typedef struct HidePose {
+    double p_enu[3], nose[2];
+} HidePose;
+
+/* The observer that is hidden from: the direction to it, and how far it is. */
+typedef struct HideSight {
+    double d_enu[3], range_m;
+} HideSight;
+HideSight hide_sight(const Scenario *scenario);
+
+/* Points of a model's surface at rest as seen from one side, body axes, one of each cell of a grid across the line of
+ * sight. */
+enum { hide_points_most = 400 };
+typedef struct HidePoints {
+    int    count;
+    double p_body[hide_points_most][3];
+} HidePoints;
+Status hide_points(HidePoints *out, const HideShape *shape, const double d_body[3]);
+
+/* Estimated share of these points that plants, ground and the box (NULL: none) hide, 0 .. 1. */
+double hide_occlusion(const HideGround *ground, const HidePose *pose, const HidePoints *points, const HideSight *sight,
+                      const HideBox *box);
+/* The same by the judge of the ground. False: it could not. */
+bool hide_judged(double *occlusion, const HideGround *ground, const HidePose *pose, const HidePoints *points,
+                 const HideSight *sight, const HideBox *box);
+
+/* What is asked of a place, and what was found. */
+typedef struct HideWish {
+    enum ScenarioHide kind;
+    double            about_m[2], within_m;
+    double            occlusion;   /* planned, 0 .. 0.95 */
+    double            heading_rad; /* NaN: drawn */
+    HideShape         shape;
+    const HideBox    *beside;          /* of SCENARIO_HIDE_BESIDE */
+    const double (*taken)[2];          /* [taken_count] places of others, which keep hide_apart_m away */
+    int      taken_count;
+    uint64_t seed, number; /* of its random numbers */
+} HideWish;
+static const double hide_apart_m = 14;
+
+typedef struct HideFound {
+    HidePose pose;
+    double   heading_rad;
+    double   occlusion; /* judged, else estimated */
+    int      fit;       /* candidates that were of the kind */
+} HideFound;
+/* False: no candidate is of that kind. */
+bool hide_find(HideFound *out, const HideGround *ground, const HideWish *wish, const HideSight *sight);
+
+#endif
