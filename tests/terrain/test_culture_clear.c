@@ -4,6 +4,8 @@
 
 #include "terrain/woods/woods.h"
 
+#include <dirent.h>
+
 /* ---- evidence ------------------------------------------------------------------------------------- */
 
 enum { drives = 30, steps = 24, fixes = drives * steps, shots = 120 };
@@ -209,12 +211,68 @@ static void woods_keep_off(void **state)
     landscape_destroy(&land);
 }
 
+static void remove_folder(const char *folder)
+{
+    DIR *dir = opendir(folder);
+    for (struct dirent *entry; dir && (entry = readdir(dir));) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        remove(path);
+    }
+    if (dir) closedir(dir);
+    remove(folder);
+}
+
+/* What is kept between runs is kept for its culture: none, one, or one with a building more. */
+static void kept_woods_know_their_culture(void **state)
+{
+    (void)state;
+    char      folder[64];
+    Landscape land;
+    double    village[2];
+    int       plants[6];
+    make(&land, 5, 3000, NULL);
+    CHECK(landscape_village(village, &land, 0));
+    Culture      c = invent(&land, village[0], village[1], 300), more = invent(&land, village[0], village[1], 300);
+    const double wood[4][2] = {{village[0] - 90, village[1] - 90},
+                               {village[0] + 90, village[1] - 90},
+                               {village[0] + 90, village[1] + 90},
+                               {village[0] - 90, village[1] + 90}};
+    CHECK(culture_add_building(&more, &(Building){.id = 1, .eaves_m = 3, .ridge_m = 4}, wood, 4) == STATUS_OK);
+    CHECK(culture_index(&more) == STATUS_OK);
+    snprintf(folder, sizeof folder, "/tmp/test_culture_clear_%ld", (long)getpid());
+    Cache *cache = cache_open(folder, (size_t)1 << 28);
+    CHECK(cache != NULL);
+    for (int k = 0; k < 6; k++) {
+        Woods             w;
+        const Culture    *of[3] = {NULL, &c, &more};
+        const WoodsConfig config = {.seed = 2,
+                                    .centre_m = {village[0], village[1]},
+                                    .half_width_m = 200,
+                                    .most_trees = woods_most_trees,
+                                    .culture = of[k % 3],
+                                    .cache = cache,
+                                    .follows = "a test"};
+        CHECK(woods_create(&w, &land, &config, NULL) == STATUS_OK);
+        plants[k] = w.count;
+        woods_destroy(&w);
+    }
+    CHECK(cache_counters(cache).fetched == 3);
+    for (int k = 0; k < 3; k++) CHECK(plants[k] == plants[k + 3]);
+    CHECK(plants[0] > plants[1] && plants[1] > plants[2]);
+    cache_close(cache);
+    remove_folder(folder);
+    culture_free(&c), culture_free(&more);
+    landscape_destroy(&land);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_where_vehicles_were),
         cmocka_unit_test(shots_stay_clear),
         cmocka_unit_test(woods_keep_off),
+        cmocka_unit_test(kept_woods_know_their_culture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
