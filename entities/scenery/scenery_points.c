@@ -21,7 +21,8 @@ void cell_pole(CellMesh *cell, int slot, const double at[3], double high_m, doub
 }
 
 /* Four legs that draw together, with rungs and a diagonal on each side of every panel. */
-void cell_lattice(CellMesh *cell, int slot, const double at[3], double high_m, double low_half_m, double top_half_m)
+void cell_lattice(CellMesh *cell, int slot, const double at[3], const double along[2], double high_m, double low_half_m,
+                  double top_half_m)
 {
     static const double bar_m = 0.04;
     static const int    side[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
@@ -32,7 +33,8 @@ void cell_lattice(CellMesh *cell, int slot, const double at[3], double high_m, d
             const double share = (double)(j + e) / panels, half = low_half_m + share * (top_half_m - low_half_m);
             for (int k = 0; k < 4; k++) {
                 double *p = e ? high[k] : low[k];
-                p[0] = at[0] + side[k][0] * half, p[1] = at[1] + side[k][1] * half;
+                p[0] = at[0] + half * (side[k][0] * along[0] - side[k][1] * along[1]);
+                p[1] = at[1] + half * (side[k][0] * along[1] + side[k][1] * along[0]);
                 p[2] = at[2] + share * high_m - (j + e == 0 ? foot_m : 0);
             }
         }
@@ -218,8 +220,8 @@ void point_make(CellMesh *cell, const CulturePoint *q, const double origin[3])
         chimney(cell, q, &s);
         break;
     case CULTURE_MAST:
-        cell_lattice(cell, cell_part(cell, "post", "metal_steel_galvanized", HEAT_PASSIVE), s.p, high_m, half_m,
-                     0.5 * half_m);
+        cell_lattice(cell, cell_part(cell, "post", "metal_steel_galvanized", HEAT_PASSIVE), s.p, s.along, high_m,
+                     half_m, 0.5 * half_m);
         break;
     case CULTURE_POINT_KINDS:
         break;
