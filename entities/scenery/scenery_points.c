@@ -71,12 +71,11 @@ static void sign(CellMesh *cell, const CulturePoint *q, const Spot *s)
     static const char *const of[4] = {"sheet_white", "container_blue", "container_red", "sheet_white"};
     const int                post = cell_part(cell, "post", "metal_steel_galvanized", HEAT_PASSIVE);
     const int                plate = cell_part(cell, "plate", one_of(of, 4, q->id), HEAT_PASSIVE);
-    const double             high_m = q->size_m[2], wide_m = fmax(q->size_m[0], q->size_m[1]);
-    const double             deep_m = fmin(0.75 * wide_m, 0.6 * high_m);
-    /* before its post, which would else cut through it */
-    const double front[2] = {s->p[0] + 0.06 * s->along[0], s->p[1] + 0.06 * s->along[1]};
+    const double             high_m = q->size_m[2], wide_m = q->size_m[0], deep_m = fmin(0.75 * wide_m, 0.6 * high_m);
+    /* along its length, beside its post, which would else cut through it */
+    const double beside[2] = {s->p[0] - 0.06 * s->along[1], s->p[1] + 0.06 * s->along[0]};
     cell_pole(cell, post, s->p, high_m, 0.04);
-    cell_box(cell, plate, front, s->along, 0.015, 0.5 * wide_m, s->p[2] + high_m - deep_m, s->p[2] + high_m);
+    cell_box(cell, plate, beside, s->along, 0.5 * wide_m, 0.015, s->p[2] + high_m - deep_m, s->p[2] + high_m);
 }
 
 static void tank(CellMesh *cell, const CulturePoint *q, const Spot *s, bool silo)
