@@ -137,7 +137,8 @@ void cell_heap(CellMesh *cell, int slot, const double at[3], const double along[
 /* ---- works (scenery_points.c, scenery_lines.c) ---------------------------------------------------- */
 
 void cell_pole(CellMesh *cell, int slot, const double at[3], double high_m, double radius_m);
-void cell_lattice(CellMesh *cell, int slot, const double at[3], double high_m, double low_half_m, double top_half_m);
+void cell_lattice(CellMesh *cell, int slot, const double at[3], const double along[2], double high_m, double low_half_m,
+                  double top_half_m);
 void point_make(CellMesh *cell, const CulturePoint *point, const double origin[3]);
 
 /* Ground under works. */

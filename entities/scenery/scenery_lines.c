@@ -191,7 +191,7 @@ static void make_power_line(const Run *r)
     for (int k = 0; k < r->stations - !r->ends; k++) {
         const Station *s = &r->station[k];
         const double   length = hypot(s->left[0], s->left[1]), left[2] = {s->left[0] / length, s->left[1] / length};
-        if (tall) cell_lattice(r->cell, post, s->p, high_m, 0.08 * high_m, 0.02 * high_m);
+        if (tall) cell_lattice(r->cell, post, s->p, left, high_m, 0.08 * high_m, 0.02 * high_m);
         else cell_pole(r->cell, post, s->p, high_m, 0.14);
         for (int a = 0; a < arms; a++) {
             const double z = s->p[2] + high_m * (a == 0 ? 0.97 : 0.82);

@@ -51,19 +51,21 @@ static bool is_free(const Clip *c, int a, int v, int b)
     return true;
 }
 
-/* The corner to cut off next: the first that is full enough, else the fullest; without an ear, the fullest corner. */
+/* The corner to cut off next: the first that is full enough, else the fullest (of many corners: of those looked at
+ * until there was one); without an ear, the fullest corner. */
 static int next_ear(const Clip *c, int from, int left, bool *clean)
 {
     static const double enough = 0.15;
-    int                 best = -1, fallback = from;
-    double              best_full = 0, fallback_full = -INFINITY;
+    enum { look_most = 64 };
+    int    best = -1, fallback = from;
+    double best_full = 0, fallback_full = -INFINITY;
     for (int k = 0, v = from; k < left; k++, v = c->after[v]) {
         const int    a = c->before[v], b = c->after[v];
         const double full = fullness(c->p[a], c->p[v], c->p[b]);
         if (full > fallback_full) fallback = v, fallback_full = full;
         if (full <= best_full || !is_free(c, a, v, b)) continue;
         best = v, best_full = full;
-        if (full > enough) break;
+        if (full > enough || k > look_most) break;
     }
     if (best < 0) *clean = false;
     return best < 0 ? fallback : best;

@@ -21,7 +21,8 @@ void cell_pole(CellMesh *cell, int slot, const double at[3], double high_m, doub
 }
 
 /* Four legs that draw together, with rungs and a diagonal on each side of every panel. */
-void cell_lattice(CellMesh *cell, int slot, const double at[3], double high_m, double low_half_m, double top_half_m)
+void cell_lattice(CellMesh *cell, int slot, const double at[3], const double along[2], double high_m, double low_half_m,
+                  double top_half_m)
 {
     static const double bar_m = 0.04;
     static const int    side[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
@@ -32,7 +33,8 @@ void cell_lattice(CellMesh *cell, int slot, const double at[3], double high_m, d
             const double share = (double)(j + e) / panels, half = low_half_m + share * (top_half_m - low_half_m);
             for (int k = 0; k < 4; k++) {
                 double *p = e ? high[k] : low[k];
-                p[0] = at[0] + side[k][0] * half, p[1] = at[1] + side[k][1] * half;
+                p[0] = at[0] + half * (side[k][0] * along[0] - side[k][1] * along[1]);
+                p[1] = at[1] + half * (side[k][0] * along[1] + side[k][1] * along[0]);
                 p[2] = at[2] + share * high_m - (j + e == 0 ? foot_m : 0);
             }
         }
@@ -69,12 +71,11 @@ static void sign(CellMesh *cell, const CulturePoint *q, const Spot *s)
     static const char *const of[4] = {"sheet_white", "container_blue", "container_red", "sheet_white"};
     const int                post = cell_part(cell, "post", "metal_steel_galvanized", HEAT_PASSIVE);
     const int                plate = cell_part(cell, "plate", one_of(of, 4, q->id), HEAT_PASSIVE);
-    const double             high_m = q->size_m[2], wide_m = fmax(q->size_m[0], q->size_m[1]);
-    const double             deep_m = fmin(0.75 * wide_m, 0.6 * high_m);
-    /* before its post, which would else cut through it */
-    const double front[2] = {s->p[0] + 0.06 * s->along[0], s->p[1] + 0.06 * s->along[1]};
+    const double             high_m = q->size_m[2], wide_m = q->size_m[0], deep_m = fmin(0.75 * wide_m, 0.6 * high_m);
+    /* along its length, beside its post, which would else cut through it */
+    const double beside[2] = {s->p[0] - 0.06 * s->along[1], s->p[1] + 0.06 * s->along[0]};
     cell_pole(cell, post, s->p, high_m, 0.04);
-    cell_box(cell, plate, front, s->along, 0.015, 0.5 * wide_m, s->p[2] + high_m - deep_m, s->p[2] + high_m);
+    cell_box(cell, plate, beside, s->along, 0.5 * wide_m, 0.015, s->p[2] + high_m - deep_m, s->p[2] + high_m);
 }
 
 static void tank(CellMesh *cell, const CulturePoint *q, const Spot *s, bool silo)
@@ -218,8 +219,8 @@ void point_make(CellMesh *cell, const CulturePoint *q, const double origin[3])
         chimney(cell, q, &s);
         break;
     case CULTURE_MAST:
-        cell_lattice(cell, cell_part(cell, "post", "metal_steel_galvanized", HEAT_PASSIVE), s.p, high_m, half_m,
-                     0.5 * half_m);
+        cell_lattice(cell, cell_part(cell, "post", "metal_steel_galvanized", HEAT_PASSIVE), s.p, s.along, high_m,
+                     half_m, 0.5 * half_m);
         break;
     case CULTURE_POINT_KINDS:
         break;

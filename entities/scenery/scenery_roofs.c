@@ -293,11 +293,11 @@ static void skillion_roof(BuildingWork *w, Outline spare)
 {
     const double way[2] = {-cos((double)w->b->ridge_rad), -sin((double)w->b->ridge_rad)}; /* up */
     double       low = INFINITY, high = -INFINITY;
-    int          lowest = 0, highest = 0;
+    int          lowest = 0;
     for (int k = 0; k < w->n; k++) {
         const double up = way[0] * w->p[k][0] + way[1] * w->p[k][1];
         if (up < low) low = up, lowest = k;
-        if (up > high) high = up, highest = k;
+        high = fmax(high, up);
     }
     overhang(spare, w);
     double highest_up = high; /* of the overhang: the highest edge of the roof */
@@ -316,12 +316,9 @@ static void skillion_roof(BuildingWork *w, Outline spare)
         wall_top(w, k, height_on(&under, w->p[k]), height_on(&under, w->p[l]));
     }
     sheet(w, w->lid, (const double(*)[2])w->p, w->n, &under, 0, false);
-    const double *a = w->p[highest], *b = w->p[(highest + 1) % w->n], *c = w->p[(highest + w->n - 1) % w->n];
-    const bool    next = way[0] * b[0] + way[1] * b[1] > way[0] * c[0] + way[1] * c[1];
-    double        inside[2], at[2];
+    double inside[2];
     inner_place(inside, w);
-    for (int k = 0; k < 2; k++) at[k] = 0.5 * (0.5 * (a[k] + (next ? b[k] : c[k])) + inside[k]);
-    ridge_at(w, at, at, height_on(&s, at));
+    ridge_at(w, inside, inside, height_on(&s, inside));
 }
 
 /* ---- roofs with a plan ---------------------------------------------------------------------------- */

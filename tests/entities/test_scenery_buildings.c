@@ -1,174 +1,387 @@
-/* Buildings of a culture as meshes: closed shells, heights, areas and volumes against closed forms, and outlines of any
- * kind. labels: physics */
+/* Buildings of a culture as meshes: heights, areas and volumes of roofs and gables against closed forms, walls, windows
+ * and doors, materials and names. Outlines of any kind: test_scenery_outlines. labels: physics */
 #include "tests/entities/buildings_fixture.h"
 
-static const double rectangle[4][2] = {{10, 10}, {22, 10}, {22, 18}, {10, 18}};
+#include <stdio.h>
 
-static void check_closed(const Scenery *s)
+static const double rectangle[4][2] = {{10, 10}, {22, 10}, {22, 18}, {10, 18}}; /* ridge east */
+static const double ell[6][2] = {{0, 0}, {14, 0}, {14, 7}, {7, 7}, {7, 15}, {0, 15}};
+static const double u_shape[8][2] = {{0, 0}, {20, 0}, {20, 15}, {14, 15}, {14, 6}, {6, 6}, {6, 15}, {0, 15}};
+static const double tee[8][2] = {{0, 0}, {18, 0}, {18, 6}, {12, 6}, {12, 14}, {6, 14}, {6, 6}, {0, 6}};
+static const double triangle[3][2] = {{0, 0}, {12, 1}, {4, 9}};
+static const double square[4][2] = {{0, 0}, {9, 0}, {9, 9}, {0, 9}};
+static const double cross[12][2] = {{5, 0},   {10, 0}, {10, 5}, {15, 5}, {15, 10}, {10, 10},
+                                    {10, 15}, {5, 15}, {5, 10}, {0, 10}, {0, 5},   {5, 5}};
+static const struct {
+    const double (*p)[2];
+    int n;
+} outline[] = {{rectangle, 4}, {ell, 6}, {u_shape, 8}, {tee, 8}, {triangle, 3}, {square, 4}, {cross, 12}};
+enum { outlines = sizeof outline / sizeof *outline };
+
+static Building with_roof(int roof)
 {
-    for (int k = 0; k < s->models; k++) {
-        const Model *m = &s->model[k];
-        CHECK(model_check(m) == STATUS_OK);
-        for (int first = 0, end; first < m->part_count; first = end) {
-            const uint64_t *id = s->part_of + s->part_first[k];
-            for (end = first + 1; end < m->part_count && id[end] == id[first];) end++;
-            Model        one = whole(m, first, end);
-            const Status status = model_validate(&one);
-            if (status != STATUS_OK) {
-                print_message("building %llu\n", (unsigned long long)id[first]);
-                if (getenv("DUMP"))
-                    for (int t = 0; t < 3 * one.triangle_count; t++) {
-                        const double *a = m->vertex[one.triangle[t / 3][t % 3]],
-                                     *b = m->vertex[one.triangle[t / 3][(t + 1) % 3]];
-                        int bal = 0;
-                        for (int u = 0; u < 3 * one.triangle_count; u++) {
-                            const double *c = m->vertex[one.triangle[u / 3][u % 3]],
-                                         *d = m->vertex[one.triangle[u / 3][(u + 1) % 3]];
-                            bal += !memcmp(a, c, 24) && !memcmp(b, d, 24);
-                            bal -= !memcmp(a, d, 24) && !memcmp(b, c, 24);
-                        }
-                        if (bal)
-                            print_message("%s: %.9f %.9f %.9f -> %.9f %.9f %.9f\n",
-                                          m->part[m->triangle_part[m->part[first].first_triangle + t / 3]].name, a[0],
-                                          a[1], a[2], b[0], b[1], b[2]);
-                    }
-            }
-            if (!getenv("DUMP")) CHECK(status == STATUS_OK);
-            whole_free(&one);
-        }
-    }
+    Building b = house;
+    b.roof = (uint8_t)roof;
+    return b;
 }
 
 static void every_roof_closes_every_outline(void **state)
 {
     (void)state;
-    static const double ell[6][2] = {{0, 0}, {14, 0}, {14, 7}, {7, 7}, {7, 15}, {0, 15}};
-    static const double u[8][2] = {{0, 0}, {20, 0}, {20, 15}, {14, 15}, {14, 6}, {6, 6}, {6, 15}, {0, 15}};
-    static const double tee[8][2] = {{0, 0}, {18, 0}, {18, 6}, {12, 6}, {12, 14}, {6, 14}, {6, 6}, {0, 6}};
-    static const double triangle[3][2] = {{0, 0}, {12, 1}, {4, 9}};
-    static const double square[4][2] = {{0, 0}, {9, 0}, {9, 9}, {0, 9}};
-    static const double cross[12][2] = {{5, 0},   {10, 0}, {10, 5}, {15, 5}, {15, 10}, {10, 10},
-                                        {10, 15}, {5, 15}, {5, 10}, {0, 10}, {0, 5},   {5, 5}};
-    static const struct {
-        const double (*p)[2];
-        int n;
-    } outline[] = {{rectangle, 4}, {ell, 6}, {u, 8}, {tee, 8}, {triangle, 3}, {square, 4}, {cross, 12}};
-    for (int o = 0; o < 7; o++)
+    for (int o = 0; o < outlines; o++)
         for (int roof = 0; roof < ROOF_SHAPES; roof++)
-            for (int use = 0; use < BUILDING_USES; use++) {
-                Culture  c = {0};
-                Building b = house;
-                b.roof = (uint8_t)roof, b.use = (uint8_t)use, b.id = (uint64_t)(100 * o + 10 * roof + use);
-                b.chimneys = 2;
-                add(&c, &b, outline[o].p, outline[o].n);
-                Scenery s = scenery_of(&c);
-                assert_int_equal(s.models, 1);
-                check_closed(&s);
-                const Model *m = &s.model[0];
-                double       high = 0;
-                for (int t = 0; t < m->triangle_count; t++)
-                    for (int k = 0; k < 3 && strcmp(m->part[m->triangle_part[t]].name, "chimney"); k++)
-                        high = fmax(high, -m->vertex[m->triangle[t][k]][2]);
-                if (use != BUILDING_HALL) CHECK_NEAR(high, 9, 1e-6);
-                scenery_free(&s);
-                culture_free(&c);
-            }
+            for (int use = 0; use < BUILDING_USES; use++)
+                for (int damage = 0; damage < 4; damage++) {
+                    Building b = with_roof(roof);
+                    b.use = (uint8_t)use, b.damage = (uint8_t)damage, b.chimneys = 2;
+                    b.id = (uint64_t)(1000 * o + 100 * roof + 10 * use + damage);
+                    Scenery s = scenery_of(&b, outline[o].p, outline[o].n);
+                    check_closed(&s);
+                    /* a third of the walls, at most a half, is left of a ruin */
+                    const double top_m = fmax(highest(&s, "roof"), highest(&s, "wall"));
+                    if (damage == 3) CHECK(top_m < 100 + 0.5 * 5.5 + 1e-6 && top_m > 100 + 0.2 * 5.5);
+                    else if (use != BUILDING_HALL && !(damage == 2 && roof == ROOF_FLAT)) CHECK_NEAR(top_m, 109, 1e-5);
+                    scenery_free(&s);
+                }
 }
 
-/* A simple outline of a kind and seed: a star of random radii; steps of a staircase; a comb of wings. */
-static int random_outline(double (*p)[2], uint64_t seed)
+/* The upper side of a roof is at the eaves' height along the walls from which it rises, and at the ridge's on top. */
+static void eaves_and_ridge_are_exact(void **state)
 {
-    const double x0 = (double)(seed % 100) * 128 + 64, y0 = (double)(seed / 100) * 128 + 64;
-    const int    kind = (int)(4 * random_uniform(seed, 1, 0, 0));
-    const double turn = kind == 3 ? 0 : 6.3 * random_uniform(seed, 1, 0, 1), c = cos(turn), s = sin(turn);
-    int          n = 0;
-    if (kind == 0) {
-        n = 3 + (int)(random_uniform(seed, 1, 0, 2) * 20);
-        for (int k = 0; k < n; k++) {
-            const double a = 2 * pi_rad * (k + 0.8 * random_uniform(seed, 2, 0, (uint64_t)k)) / n;
-            const double r = 3 + 15 * random_uniform(seed, 3, 0, (uint64_t)k);
-            p[k][0] = r * cos(a), p[k][1] = r * sin(a);
+    (void)state;
+    for (int roof = 0; roof < ROOF_SHAPES; roof++) {
+        const Building b = with_roof(roof);
+        Scenery        s = scenery_of(&b, rectangle, 4);
+        const double   middle_m = height_over(&s, "roof", 16, 14);
+        if (roof == ROOF_GABLED || roof == ROOF_HIPPED || roof == ROOF_PYRAMIDAL) {
+            CHECK_NEAR(height_over(&s, "roof", 16, 10), 105.5, 1e-5);
+            CHECK_NEAR(height_over(&s, "roof", 13.3, 18), 105.5, 1e-5);
+            CHECK_NEAR(middle_m, 109, 1e-5);
         }
-    } else {
-        const int wings = 1 + (int)(random_uniform(seed, 1, 0, 2) * 6);
-        double    x = 0;
-        p[n][0] = 0, p[n++][1] = 0;
-        for (int k = 0; k < wings; k++) {
-            /* whole metres in kind 2 and 3: many events at once */
-            const double u = 2 + 8 * random_uniform(seed, 2, 0, (uint64_t)k),
-                         v = 4 + 12 * random_uniform(seed, 3, 0, (uint64_t)k);
-            const double wide = kind > 1 ? 1 + floor(u) : u, high = kind > 1 ? floor(v) : v;
-            p[n][0] = x, p[n++][1] = -high;
-            x += wide;
-            p[n][0] = x, p[n++][1] = -high;
+        if (roof == ROOF_GABLED)
+            CHECK_NEAR(height_over(&s, "roof", 10, 14), 109, 1e-5); /* the ridge ends at the gable */
+        if (roof == ROOF_HIPPED) CHECK_NEAR(height_over(&s, "roof", 10, 14), 105.5, 1e-5);
+        if (roof == ROOF_HIPPED) CHECK_NEAR(height_over(&s, "roof", 14, 14), 109, 1e-5); /* half the width inside */
+        if (roof == ROOF_SKILLION) { /* falls towards east, its upper edge an overhang outside the wall */
+            CHECK_NEAR(height_over(&s, "roof", 22, 14), 105.5, 1e-5);
+            CHECK_NEAR(height_over(&s, "roof", 16, 12), 105.5 + 3.5 * 6 / 12.4, 1e-5);
         }
-        p[n][0] = x, p[n++][1] = 0;
+        if (roof == ROOF_FLAT) CHECK_NEAR(middle_m, 105.5, 1e-5);
+        if (roof == ROOF_FLAT) CHECK_NEAR(highest(&s, "wall"), 109, 1e-5); /* its parapet */
+        scenery_free(&s);
     }
-    for (int k = 0; k < n; k++) {
-        const double x = p[k][0], y = p[k][1];
-        p[k][0] = x0 + c * x - s * y, p[k][1] = y0 + s * x + c * y;
-    }
-    return n;
 }
 
-static void any_outline_is_closed_and_sound(void **state)
+/* What a roof with its overhang covers: of a rectangle a by b by elementary geometry; the volume over its lowest edge:
+ * hipped h a (3 b - a) / 6, gabled h a b / 2, pyramidal h a b / 3, skillion h a b / 2. */
+static void areas_and_volumes_are_those_of_the_solids(void **state)
+{
+    (void)state;
+    const double o = scenery_overhang_m, a = 8 + 2 * o, b = 12 + 2 * o, slope = 3.5 / 4;
+    for (int roof = ROOF_GABLED; roof < ROOF_SHAPES; roof++) {
+        const Building of = with_roof(roof);
+        Scenery        s = scenery_of(&of, rectangle, 4);
+        double         volume_m3;
+        const double   low_m = 105.5 - slope * o;
+        if (roof == ROOF_GABLED || roof == ROOF_HIPPED) {
+            CHECK_NEAR(covered_m2(&volume_m3, &s, "roof", low_m), a * b, 1e-6);
+            const double h = slope * 0.5 * a;
+            CHECK_NEAR(volume_m3, roof == ROOF_HIPPED ? h * a * (3 * b - a) / 6 : h * a * b / 2, 1e-4);
+        }
+        if (roof == ROOF_SKILLION) {
+            const double rise_m = 3.5 * b / (b - o);
+            CHECK_NEAR(covered_m2(&volume_m3, &s, "roof", 109 - rise_m), a * b, 1e-6);
+            CHECK_NEAR(volume_m3, rise_m * a * b / 2, 1e-4);
+        }
+        if (roof == ROOF_PYRAMIDAL) { /* larger by one factor about its apex */
+            const double m2 = covered_m2(&volume_m3, &s, "roof", 109), grow = sqrt(m2 / 96);
+            CHECK(grow > 1.02 && 12 * (grow - 1) / 2 < 1.4 * o);
+            CHECK_NEAR(volume_m3, -m2 * 3.5 * grow * 2 / 3, 1e-4);
+        }
+        scenery_free(&s);
+    }
+    /* of an L: Steiner's formula: area + o around + o^2 sum of tan(half the turn): five corners left, one right */
+    const Building hipped = with_roof(ROOF_HIPPED);
+    Scenery        s = scenery_of(&hipped, ell, 6);
+    CHECK_NEAR(covered_m2(NULL, &s, "roof", 0), 14 * 7 + 7 * 8 + o * 58 + o * o * 4, 1e-6);
+    scenery_free(&s);
+}
+
+/* Under a gable of a width and slope: the triangle over the walls' upright part. */
+static void gables_are_closed_by_triangles(void **state)
+{
+    (void)state;
+    Building b = with_roof(ROOF_GABLED);
+    b.use = BUILDING_BARN; /* its gable ends have no openings */
+    Scenery s = scenery_of(&b, rectangle, 4);
+    double  end_m2 = 0, low_m = INFINITY, corner_m = -INFINITY;
+    for (int t = 0; t < s.model[0].triangle_count; t++) {
+        const Facet f = facet(&s, 0, t);
+        if (!is_part(&f, "wall")) continue;
+        for (int k = 0; k < 3; k++) {
+            low_m = fmin(low_m, f.p[k][2]);
+            if (f.p[k][1] < 10 + 1e-6) corner_m = fmax(corner_m, f.p[k][2]); /* the south wall is level */
+        }
+        if (f.n[0] > 0.999 * v3_length(f.n)) end_m2 += 0.5 * v3_length(f.n);
+    }
+    CHECK_NEAR(low_m, 99.5, 1e-5); /* half a metre into the ground */
+    CHECK(corner_m < 105.5 && corner_m > 105.5 - 0.3);
+    CHECK_NEAR(end_m2, 8 * (corner_m - low_m) + 0.25 * 8 * 8 * 3.5 / 4, 1e-5);
+    scenery_free(&s);
+}
+
+/* Over a convex outline the roof is the lowest of the planes over its edges: as far up as the nearest edge is away. */
+static void a_hipped_roof_is_the_lowest_of_its_planes(void **state)
+{
+    (void)state;
+    const Building b = with_roof(ROOF_HIPPED);
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        double    p[9][2];
+        const int n = 3 + (int)(seed % 7);
+        for (int k = 0; k < n; k++) { /* on a circle: convex */
+            const double a = 2 * pi_rad * (k + 0.7 * random_uniform(seed, 1, 0, (uint64_t)k)) / n;
+            p[k][0] = 12 * cos(a), p[k][1] = 12 * sin(a);
+        }
+        Scenery s = scenery_of(&b, (const double(*)[2])p, n);
+        double  slope = 0;
+        for (int k = 0; k < 60; k++) {
+            const double r = 5 * sqrt(random_uniform(seed, 2, 0, (uint64_t)k)), a = 2.4 * k;
+            const double x = r * cos(a), y = r * sin(a);
+            double       nearest_m = INFINITY;
+            for (int e = 0; e < n; e++) {
+                const double *u = p[e], *v = p[(e + 1) % n];
+                nearest_m = fmin(nearest_m, ((v[0] - u[0]) * (y - u[1]) - (v[1] - u[1]) * (x - u[0])) /
+                                                hypot(v[0] - u[0], v[1] - u[1]));
+            }
+            if (nearest_m < 0.2) continue;
+            const double here = (height_over(&s, "roof", x, y) - 105.5) / nearest_m;
+            if (slope > 0) CHECK_NEAR(here, slope, 2e-3); /* nodes nearer than 1 mm are one */
+            else slope = here;
+        }
+        CHECK(slope > 0.1);
+        scenery_free(&s);
+    }
+}
+
+static void every_slope_of_a_hipped_roof_is_as_steep(void **state)
+{
+    (void)state;
+    const Building b = with_roof(ROOF_HIPPED);
+    for (int o = 0; o < outlines; o++) {
+        Scenery s = scenery_of(&b, outline[o].p, outline[o].n);
+        double  steep = 0;
+        for (int t = 0; t < s.model[0].triangle_count; t++) {
+            const Facet f = facet(&s, 0, t);
+            if (!is_part(&f, "roof") || f.n[2] < 1e-6) continue;
+            const double here = hypot(f.n[0], f.n[1]) / f.n[2];
+            if (steep > 0) CHECK_NEAR(here, steep, 1e-6);
+            else steep = here;
+        }
+        scenery_free(&s);
+    }
+}
+
+/* ---- walls ---------------------------------------------------------------------------------------- */
+
+static void windows_stand_in_rows_and_doors_on_the_floor(void **state)
+{
+    (void)state;
+    Building b = with_roof(ROOF_HIPPED);
+    b.levels = 3, b.eaves_m = 9, b.ridge_m = 12;
+    Scenery s = scenery_of(&b, rectangle, 4);
+    int     panes = 0, doors = 0;
+    for (int t = 0; t < s.model[0].triangle_count; t++) {
+        const Facet  f = facet(&s, 0, t);
+        const bool   pane = is_part(&f, "window") && f.part->role == HEAT_WINDOW, door = is_part(&f, "door");
+        const double storey_m = 9.0 / 3;
+        if (!pane && !door) continue;
+        /* each lies 0.1 m inside one wall, and 0.5 m at least from its corners */
+        for (int k = 0; k < 3; k++) {
+            const double *p = f.p[k], x = fmin(p[0] - 10, 22 - p[0]), y = fmin(p[1] - 10, 18 - p[1]);
+            CHECK_NEAR(fmin(x, y), 0.1, 1e-6);
+            CHECK(fmax(x, y) > 0.5);
+            const double up_m = fmod(p[2] - 100, storey_m);
+            if (pane) CHECK(up_m > 0.3 && up_m < storey_m - 0.3);
+            if (door) CHECK(p[2] < 102.5);
+        }
+        if (door) CHECK(fmin(f.p[0][2], fmin(f.p[1][2], f.p[2][2])) < 100.1);
+        CHECK(fabs(f.n[2]) < 1e-9);
+        panes += pane, doors += door;
+    }
+    CHECK(panes >= 2 * 3 * 6 && doors == 2);
+    scenery_free(&s);
+    /* so high that no window fits in its storeys: fewer storeys */
+    b.levels = 100;
+    s = scenery_of(&b, rectangle, 4);
+    check_closed(&s);
+    scenery_free(&s);
+}
+
+static double slope_of_ground(void *user, double x_m, double y_m)
+{
+    (void)y_m;
+    return 100 + *(const double *)user * (x_m - 10);
+}
+
+/* On a slope, walls go down to the ground everywhere; windows that it would cover are left out, and the door is where
+ * the floor is near the ground. */
+static void buildings_on_a_slope_have_no_windows_in_the_ground(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        double  slope = k == 0 ? 0.2 : k == 1 ? -0.2 : 0.5;
+        Culture c = {0};
+        Scenery s = {0};
+        add(&c, &house, rectangle, 4);
+        CHECK(scenery_add_buildings(&s, &c, slope_of_ground, &slope) == STATUS_OK);
+        check_closed(&s);
+        double low_m = INFINITY;
+        for (int t = 0; t < s.model[0].triangle_count; t++) {
+            const Facet f = facet(&s, 0, t);
+            for (int i = 0; i < 3; i++) {
+                const double ground_m = slope_of_ground(&slope, f.p[i][0], 0);
+                low_m = fmin(low_m, f.p[i][2]);
+                if (is_part(&f, "window") && f.part->role == HEAT_WINDOW) CHECK(f.p[i][2] > ground_m - 0.25);
+                if (is_part(&f, "door")) CHECK(fabs(ground_m - 100) < (slope > 0.3 ? 7 : 1.3));
+            }
+        }
+        CHECK_NEAR(low_m, fmin(100, slope_of_ground(&slope, 22, 0)) - 0.5, 1e-5);
+        scenery_free(&s), culture_free(&c);
+    }
+}
+
+/* ---- names ---------------------------------------------------------------------------------------- */
+
+static bool is_material(const char *name)
+{
+    char path[1024], line[512];
+    CHECK(etc_path(path, sizeof path, "materials.csv"));
+    FILE *file = fopen(path, "r");
+    bool  found = false;
+    CHECK(file);
+    while (!found && fgets(line, sizeof line, file))
+        found = !strncmp(line, name, strlen(name)) && line[strlen(name)] == ',';
+    fclose(file);
+    return found;
+}
+
+static void parts_have_known_names_and_materials_that_exist(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"wall", "roof", "window", "door", "chimney", "heap"};
+    static const struct {
+        int         fabric;
+        const char *piece[3];
+    } piece[] = {{FABRIC_BRICK, {"brick", "brick", "brick"}},
+                 {FABRIC_RENDER, {"render", "render", "render"}},
+                 {FABRIC_STONE, {"stone", "stone", "stone"}},
+                 {FABRIC_TIMBER, {"timber", "wood", "timber"}},
+                 {FABRIC_CONCRETE, {"concrete", "concrete", "concrete"}},
+                 {FABRIC_SHEET, {"sheet", "metal", "steel"}},
+                 {FABRIC_TILE, {"tile", "tile", "tile"}},
+                 {FABRIC_SLATE, {"slate", "slate", "slate"}},
+                 {FABRIC_FELT, {"felt", "felt", "felt"}},
+                 {FABRIC_THATCH, {"thatch", "thatch", "thatch"}}};
+    char        seen[64][32];
+    int         known = 0;
+    int         bricks = 0; /* materials of brick walls */
+    const char *brick[3] = {"brick_red", "brick_brown", "brick_yellow"};
+    for (uint64_t id = 0; id < 240; id++) {
+        Building b = house;
+        b.id = id, b.heated = id % 3 > 0, b.damage = (uint8_t)(id % 4), b.use = (uint8_t)(id % BUILDING_USES);
+        b.wall_fabric = (uint8_t)(id / 4 % FABRICS), b.roof_fabric = (uint8_t)(id / 40 % FABRICS);
+        Scenery s = scenery_of(&b, rectangle, 4);
+        for (int k = 0; k < s.model[0].part_count; k++) {
+            const ModelPart *part = &s.model[0].part[k];
+            bool             ok = false;
+            for (size_t n = 0; n < sizeof names / sizeof *names; n++) ok = ok || !strcmp(part->name, names[n]);
+            CHECK(ok);
+            CHECK(s.part_of[s.part_first[0] + k] == id);
+            int at = 0;
+            while (at < known && strcmp(seen[at], part->material)) at++;
+            if (at == known) {
+                CHECK(known < 64 && is_material(part->material));
+                snprintf(seen[known++], sizeof seen[0], "%s", part->material);
+            }
+            const bool warm = b.heated && b.damage < 2;
+            if (!strcmp(part->material, "glass_window")) CHECK(part->role == (warm ? HEAT_WINDOW : HEAT_PASSIVE));
+            if (part->role == HEAT_DWELLING) CHECK(warm);
+            if (k == 0) { /* the walls' own fabric comes first */
+                const char *const *of = piece[b.wall_fabric].piece;
+                CHECK(strstr(part->material, of[0]) || strstr(part->material, of[1]) || strstr(part->material, of[2]));
+                for (int n = 0; n < 3; n++)
+                    if (b.wall_fabric == FABRIC_BRICK && !strcmp(part->material, brick[n])) bricks |= 1 << n;
+            }
+        }
+        scenery_free(&s);
+    }
+    CHECK(bricks == 7 && known > 30); /* not all of a fabric are alike */
+}
+
+/* ---- cells ---------------------------------------------------------------------------------------- */
+
+static void a_cell_is_one_model_and_its_parts_name_their_buildings(void **state)
 {
     (void)state;
     Culture c = {0};
-    for (uint64_t seed = 0; seed < 10000; seed++) {
-        double   p[64][2];
+    for (int k = 0; k < 8; k++) { /* in the cells from -128, 0 and 128: 20 m apart, from -30 to 110; two beyond */
+        double   p[4][2];
         Building b = house;
-        b.id = seed + 1;
-        b.roof = (uint8_t)(seed % ROOF_SHAPES), b.use = (uint8_t)(seed / 5 % BUILDING_USES);
-        b.ridge_rad = (float)(6.3 * random_uniform(seed, 1, 0, 1));
-        b.eaves_m = (float)(2.2 + 8 * random_uniform(seed, 4, 0, 0));
-        b.ridge_m = b.eaves_m + (float)(5 * random_uniform(seed, 4, 0, 1));
-        b.damage = (uint8_t)(seed % 7 < 4 ? 0 : seed % 7 - 3), b.levels = (uint8_t)(1 + seed % 4),
-        b.chimneys = (uint8_t)(seed % 5);
-        CHECK(culture_add_building(&c, &b, (const double(*)[2])p, random_outline(p, seed)) == STATUS_OK);
+        b.id = (uint64_t)(50 + k), b.base_m = (float)(100 + k);
+        const double x = k < 6 ? -30 + 20 * k : 200;
+        const double y = k == 7 ? -40 : 20;
+        for (int i = 0; i < 4; i++) p[i][0] = x + rectangle[i][0] - 16, p[i][1] = y + rectangle[i][1] - 14;
+        add(&c, &b, (const double(*)[2])p, 4);
     }
-    print_message("%d buildings, %d left out\n", c.buildings, c.left_out);
-    Scenery s = scenery_of(&c);
-    check_closed(&s);
-    double least = INFINITY;
-    int    flat = 0;
+    Scenery s = {0};
+    CHECK(scenery_add_buildings(&s, &c, NULL, NULL) == STATUS_OK);
+    assert_int_equal(s.models, 4);
+    assert_int_equal(s.objects, 4);
     for (int k = 0; k < s.models; k++) {
-        const Model *m = &s.model[k];
-        for (int t = 0; t < m->triangle_count; t++) {
-            double u[3], v[3], n[3];
-            v3_sub(u, m->vertex[m->triangle[t][1]], m->vertex[m->triangle[t][0]]);
-            v3_sub(v, m->vertex[m->triangle[t][2]], m->vertex[m->triangle[t][0]]);
-            v3_cross(n, u, v);
-            const double area = 0.5 * sqrt(v3_dot(n, n));
-            if (!(area > 1e-9))
-                print_message("model %s part %s area %g\n", m->name, m->part[m->triangle_part[t]].name, area);
-            least = fmin(least, area);
-        }
-        const uint64_t  id = s.part_of[s.part_first[k]] - 1;
-        const Building *b = NULL;
-        for (int q = 0; q < c.buildings && !b; q++)
-            if (c.building[q].id == id + 1) b = &c.building[q];
-        double high = 0;
-        for (int t = 0; t < m->triangle_count; t++)
-            for (int q = 0; q < 3 && !strcmp(m->part[m->triangle_part[t]].name, "roof"); q++)
-                high = fmax(high, -m->vertex[m->triangle[t][q]][2]);
-        if (b->damage < 3 && b->roof && b->use != BUILDING_HALL && b->ridge_m - b->eaves_m > 0.1F &&
-            high < b->ridge_m - 1e-3F) {
-            if (flat++ < 10)
-                print_message("flat: seed %d roof %d corners %d: %g of %g\n", (int)id, b->roof, b->corners, high,
-                              (double)b->ridge_m);
+        CHECK(s.object[k].kind == SCENERY_BUILDINGS && s.object[k].state == -1 && s.object[k].model == k);
+        CHECK(s.part_first[k] == (k ? s.part_first[k - 1] + s.model[k - 1].part_count : 0));
+        for (int i = 0; i < k; i++) CHECK(s.object[i].id != s.object[k].id);
+        for (int t = 0; t < s.model[k].triangle_count; t++) {
+            /* a facet lies over the building that its part names */
+            const Facet    f = facet(&s, k, t);
+            const uint64_t id = s.part_of[s.part_first[k] + s.model[k].triangle_part[t]];
+            const double   x = id < 56 ? -30 + 20 * (double)(id - 50) : 200, y = id == 57 ? -40 : 20;
+            CHECK(id >= 50 && id < 58);
+            for (int i = 0; i < 3; i++) {
+                CHECK(fabs(f.p[i][0] - x) < 6.5 && fabs(f.p[i][1] - y) < 4.5);
+                CHECK(f.p[i][2] > 99.4 + (double)(id - 50) && f.p[i][2] < 109.1 + (double)(id - 50));
+            }
         }
     }
-    print_message("least area %g; flat instead %d\n", least, flat);
-    scenery_free(&s);
-    culture_free(&c);
+    /* again into the same scenery: as many more, numbered on, with the same bits */
+    CHECK(scenery_add_buildings(&s, &c, NULL, NULL) == STATUS_OK);
+    assert_int_equal(s.models, 8);
+    for (int k = 0; k < 4; k++) {
+        const Model *a = &s.model[k], *b = &s.model[k + 4];
+        CHECK(s.object[k + 4].model == k + 4);
+        CHECK(s.part_first[k + 4] == s.part_first[k] + s.part_first[3] + s.model[3].part_count);
+        CHECK(a->vertex_count == b->vertex_count && a->triangle_count == b->triangle_count);
+        assert_memory_equal(a->vertex, b->vertex, (size_t)a->vertex_count * sizeof *a->vertex);
+        assert_memory_equal(a->normal, b->normal, (size_t)a->vertex_count * sizeof *a->normal);
+        assert_memory_equal(a->triangle, b->triangle, (size_t)a->triangle_count * sizeof *a->triangle);
+    }
+    scenery_free(&s), culture_free(&c);
+    CHECK(scenery_add_buildings(&s, &c, NULL, NULL) == STATUS_OK && s.models == 0); /* of nothing nothing */
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_outline_is_closed_and_sound),
         cmocka_unit_test(every_roof_closes_every_outline),
+        cmocka_unit_test(eaves_and_ridge_are_exact),
+        cmocka_unit_test(areas_and_volumes_are_those_of_the_solids),
+        cmocka_unit_test(gables_are_closed_by_triangles),
+        cmocka_unit_test(a_hipped_roof_is_the_lowest_of_its_planes),
+        cmocka_unit_test(every_slope_of_a_hipped_roof_is_as_steep),
+        cmocka_unit_test(windows_stand_in_rows_and_doors_on_the_floor),
+        cmocka_unit_test(buildings_on_a_slope_have_no_windows_in_the_ground),
+        cmocka_unit_test(parts_have_known_names_and_materials_that_exist),
+        cmocka_unit_test(a_cell_is_one_model_and_its_parts_name_their_buildings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
