@@ -7,7 +7,7 @@
 SceneryHeatConfig scenery_heat_default_config(void)
 {
     SceneryHeatConfig c = {.heat = heat_default_config()};
-    c.heat.facets = 13;
+    c.heat.facets = 17;
     return c;
 }
 
@@ -111,7 +111,7 @@ static Status create(SceneryHeat **out, const SceneryHeatConfig *config, const S
 {
     const HeatConfig *c = &config->heat;
     const double      steps = c->spin_up_s / c->step_s;
-    if (!(c->facets >= 3 && c->facets <= heat_most_facets && c->facets % 2 == 1 && c->step_s >= 60 &&
+    if (!(c->facets >= 3 && c->facets <= scenery_most_facets && c->facets % 2 == 1 && c->step_s >= 60 &&
           c->step_s <= 3600 && steps >= 1 && steps <= 1e5 && fabs(c->unix_s) < 1e11))
         return STATUS_BAD_VALUE;
     if (scenery->states > scenery_most_states) {
@@ -246,6 +246,19 @@ static double taken_at(const SceneryTemps *t, int wall, const SceneryObject *o, 
     return all > 1e-3 ? fmin(lost / (255 * all), 1) : 0;
 }
 
+/* Between the four nodes about a normal: bilinear, but in two triangles where the hemisphere is folded between them
+ * (n_east or n_north changes sign), along the fold, for what faces one of the four winds lies on it. */
+static double blend(const float *at, int cell, int facets, const double s[2])
+{
+    const double a = (double)at[0], b = (double)at[1], c = (double)at[facets], d = (double)at[facets + 1];
+    const int    i = cell % facets, j = cell / facets;
+    if (i == j) return s[0] >= s[1] ? a + s[0] * (b - a) + s[1] * (d - b) : a + s[1] * (c - a) + s[0] * (d - c);
+    if (i + j == facets - 2)
+        return s[0] + s[1] <= 1 ? a + s[0] * (b - a) + s[1] * (c - a) : d + (1 - s[0]) * (c - d) + (1 - s[1]) * (b - d);
+    const double low = a + s[0] * (b - a), high = c + s[0] * (d - c);
+    return low + s[1] * (high - low);
+}
+
 /* In the sun; shade_k: in its shade. */
 static double facets_k(double *shade_k, const SceneryTemps *t, int wall, const double n_enu[3])
 {
@@ -253,14 +266,12 @@ static double facets_k(double *shade_k, const SceneryTemps *t, int wall, const d
     const int           facets = t->heat->config.heat.facets;
     const float        *k = t->face_k + (size_t)wall * (size_t)w->columns;
     double              share[2];
-    const float        *at = k + scenery_facet(share, facets, n_enu);
-    const double        low = (double)at[0] + share[0] * (double)(at[1] - at[0]),
-                 high = (double)at[facets] + share[0] * (double)(at[facets + 1] - at[facets]);
-    const double up = clamp(n_enu[2], 0, 1) * (heat_ups - 1);
-    const int    node = (int)fmin(up, heat_ups - 2);
-    const float *shade = k + facets * facets + node;
+    const int           cell = scenery_facet(share, facets, n_enu);
+    const double        up = clamp(n_enu[2], 0, 1) * (heat_ups - 1);
+    const int           node = (int)fmin(up, heat_ups - 2);
+    const float        *shade = k + facets * facets + node;
     *shade_k = (double)shade[0] + (up - node) * (double)(shade[1] - shade[0]);
-    return low + share[1] * (high - low);
+    return blend(k + cell, cell, facets, share);
 }
 
 void scenery_wall_seen(WallSeen *out, const SceneryTemps *t, const double n_enu[3], double taken)

@@ -27,7 +27,7 @@
 #include "render/heat/heat.h"
 #include "render/heat/part_table.h"
 
-enum { scenery_most_walls = 192, scenery_most_states = 256 };
+enum { scenery_most_walls = 192, scenery_most_states = 256, scenery_most_facets = 33 };
 static const double clutter_step_s = 60;
 
 typedef struct SceneryHeat  SceneryHeat;
