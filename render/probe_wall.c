@@ -1,9 +1,9 @@
 /* render/probe_wall.c: `pitviper probe heat-wall`: walls and roofs of etc/constructions.csv for rows of CSV, as frames
  * have them, without a scene.
  *
- * Each local day (by the sun's mean time at the place) is an exercise of its own, warmed up over the two days before its
- * midnight, so that a row's answer depends on no other row. Rows of one construction, material and day in the order of
- * time are answered without starting again. */
+ * Each local day (by the sun's mean time at the place) is an exercise of its own, warmed up over the two days before
+ * its midnight, so that a row's answer depends on no other row. Rows of one construction, material and day in the order
+ * of time are answered without starting again. */
 #include "render/probe_private.h"
 #include "render/frame/world.h"
 #include "terrain/probe.h"
@@ -117,8 +117,9 @@ const char *wall_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
         scenery_temps_at(&temps, p->heat, unix_s, p->arena) != STATUS_OK)
         return "out of memory";
     scenery_wall_seen(&seen, temps, n_enu, shade);
-    const double number[] = {seen.temp_k,       seen.behind_k,    seen.air_k,        seen.ground_k,     seen.absorbed_w_m2,
-                             seen.direct_w_m2, seen.diffuse_w_m2, seen.longwave_w_m2, seen.film_w_m2k};
+    const double number[] = {seen.temp_k,       seen.behind_k,      seen.air_k,
+                             seen.ground_k,     seen.absorbed_w_m2, seen.direct_w_m2,
+                             seen.diffuse_w_m2, seen.longwave_w_m2, seen.film_w_m2k};
     for (size_t k = 0; k < sizeof number / sizeof *number; k++) out[k].number = number[k];
     return NULL;
 }

@@ -5,10 +5,9 @@
 #include <stdlib.h>
 
 static const char *const role_name[HEAT_ROLE_COUNT] = {
-    "passive", "hull",     "turret",   "engine_deck", "exhaust", "gun",   "track",
-    "wheel",   "cabin",    "rotor",    "turbine",     "motor",   "nose",  "airframe",
-    "skin",    "clothing", "dwelling", "window",      "flue",    "flare", "fire",
-    "ember",   "smoulder", "wreck",
+    "passive",  "hull",   "turret",  "engine_deck", "exhaust", "gun",      "track",    "wheel",
+    "cabin",    "rotor",  "turbine", "motor",       "nose",    "airframe", "skin",     "clothing",
+    "dwelling", "window", "flue",    "flare",       "fire",    "ember",    "smoulder", "wreck",
 };
 
 const char *heat_role_name(HeatRole role) { return (unsigned)role < HEAT_ROLE_COUNT ? role_name[role] : "?"; }

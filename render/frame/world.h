@@ -34,13 +34,13 @@ typedef struct World {
     RadarConfig       radar;
     WeatherCourse    *course; /* NULL after world_open, with heat and shadow: ground as warm as the air */
     Heat             *heat;
-    ShadowMap        *shadow;  /* NULL with heat: nothing shaded the ground */
-    struct HeatDrive *drive;   /* of heat */
+    ShadowMap        *shadow;       /* NULL with heat: nothing shaded the ground */
+    struct HeatDrive *drive;        /* of heat */
     SceneryHeat      *scenery_heat; /* NULL: world_warm_scenery was not called */
-    PartTable         parts;   /* what is behind the skin of parts */
-    PatchSet         *patches; /* of the models that have been seen with temperatures */
-    Cache            *cache;   /* world_keep; NULL: nowhere */
-    struct SkyKept   *sky;     /* what frames leave for the next (render/light/sky_visibility.h) */
+    PartTable         parts;        /* what is behind the skin of parts */
+    PatchSet         *patches;      /* of the models that have been seen with temperatures */
+    Cache            *cache;        /* world_keep; NULL: nowhere */
+    struct SkyKept   *sky;          /* what frames leave for the next (render/light/sky_visibility.h) */
 } World;
 
 /* frame: the landscape's, or any where there is none. */

@@ -16,9 +16,12 @@ static const TableColumn layer_columns[] = {
     {"j_kgk", TABLE_DOUBLE, LAYER(heat_capacity_j_kgk), .low = 100, .high = 5000},
     {"m2k_w", TABLE_DOUBLE, LAYER(resistance_m2k_w), .low = 0, .high = 10},
 };
-static const TableFormat layer_format = {"constructions", layer_columns, sizeof layer_columns / sizeof *layer_columns,
+static const TableFormat layer_format = {"constructions",
+                                         layer_columns,
+                                         sizeof layer_columns / sizeof *layer_columns,
                                          .next = "etc/construction_layers.csv explains the columns",
-                                         .least_rows = 1, .most_rows = construction_most_materials};
+                                         .least_rows = 1,
+                                         .most_rows = construction_most_materials};
 
 typedef struct LayerMaterials {
     int           count;
@@ -86,9 +89,12 @@ static const TableColumn columns[] = {
     {"rough", TABLE_DOUBLE, KIND(rough), .low = 1, .high = 2.5},
     {"absorptance", TABLE_DOUBLE, KIND(absorptance), .low = 0, .high = 1, .absent = TABLE_EMPTY, .otherwise = NAN},
 };
-static const TableFormat format = {"constructions", columns, sizeof columns / sizeof *columns,
+static const TableFormat format = {"constructions",
+                                   columns,
+                                   sizeof columns / sizeof *columns,
                                    .next = "etc/constructions.csv explains the columns",
-                                   .least_rows = 1, .most_rows = construction_most};
+                                   .least_rows = 1,
+                                   .most_rows = construction_most};
 
 typedef struct Reading {
     Constructions        *out;
@@ -157,8 +163,7 @@ Status constructions_open(Constructions *out, const char *path, const char *laye
     memset(out, 0, sizeof *out);
     if (status == STATUS_OK)
         status = table_each(&layer_format, layers_path, &layer, sizeof layer, take_layer, materials);
-    if (status == STATUS_OK)
-        status = table_each(&format, path, row, sizeof *row, take_row, &(Reading){out, materials});
+    if (status == STATUS_OK) status = table_each(&format, path, row, sizeof *row, take_row, &(Reading){out, materials});
     free(row);
     free(materials);
     return status;

@@ -60,9 +60,9 @@ static void use_normals(SceneryHeat *h, const SceneryObject *o)
 {
     const Model *model = &h->scenery->model[o->model];
     for (int t = 0; t < model->triangle_count; t++) {
-        const int        part = model->triangle_part[t], wall = h->part_wall[h->part_first[o->model] + part];
-        const uint32_t  *corner = model->triangle[t];
-        double           a[3], b[3], n[4][3], n_enu[3];
+        const int       part = model->triangle_part[t], wall = h->part_wall[h->part_first[o->model] + part];
+        const uint32_t *corner = model->triangle[t];
+        double          a[3], b[3], n[4][3], n_enu[3];
         if (wall < 0) continue;
         v3_sub(a, model->vertex[corner[1]], model->vertex[corner[0]]);
         v3_sub(b, model->vertex[corner[2]], model->vertex[corner[0]]);
@@ -214,8 +214,7 @@ Status scenery_temps_at(SceneryTemps **out, SceneryHeat *h, double unix_s, Arena
     Status status = scenery_states_advance(&h->states, &h->walls, unix_s);
     scenery_walls_advance(&h->walls, unix_s);
     if (status == STATUS_OK) status = blend_walls(t, h, unix_s, arena);
-    if (status == STATUS_OK)
-        status = scenery_states_show(&t->patch_k, &t->first, &h->states, unix_s, arena);
+    if (status == STATUS_OK) status = scenery_states_show(&t->patch_k, &t->first, &h->states, unix_s, arena);
     if (status == STATUS_OK) t->r_enu_from_body = arena_alloc(arena, (size_t)s->movers + 1, sizeof *t->r_enu_from_body);
     if (status != STATUS_OK || !t->r_enu_from_body) return status == STATUS_OK ? STATUS_NO_MEMORY : status;
     for (int k = 0; k < s->movers; k++) {

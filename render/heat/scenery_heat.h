@@ -3,9 +3,9 @@
  *
  * Buildings and works. What a part is built of is a row of etc/constructions.csv (construction.h). Each that some part
  * has is conduction in layers (wall_column_private.h) under the weather, for normals over the upper hemisphere, in the
- * sun and in the shade, on the grid of time of the ground's heat (heat.h), of which it is no part: with the same spin-up
- * and kept in the same cache, and ground is the same with it or without. What faces down is as warm as a wall of that
- * side. About a wall the ground is half grass and half paved.
+ * sun and in the shade, on the grid of time of the ground's heat (heat.h), of which it is no part: with the same
+ * spin-up and kept in the same cache, and ground is the same with it or without. What faces down is as warm as a wall
+ * of that side. About a wall the ground is half grass and half paved.
  *
  * Clutter. Each SceneryState is one entity of its model (vehicle_heat.h) that stands alone in open level grass at the
  * world's origin, has done the same for an hour, and stood cold before; with stood_s, its engine stopped so long before

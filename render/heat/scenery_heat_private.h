@@ -35,8 +35,8 @@ typedef struct WallsState {
 /* At a time of the grid, or between two. */
 typedef struct WallsTable {
     double air_k, about_k[about_columns], behind_k[scenery_most_walls];
-    float *face_k;                                          /* [walls * columns] */
-    float  sun_k[scenery_most_walls][heat_day_slots];       /* K now for the direct sun of a slot, per unit cosine */
+    float *face_k;                                    /* [walls * columns] */
+    float  sun_k[scenery_most_walls][heat_day_slots]; /* K now for the direct sun of a slot, per unit cosine */
 } WallsTable;
 
 typedef struct SceneryWalls {
@@ -47,7 +47,7 @@ typedef struct SceneryWalls {
     Column                   layers[about_columns];
     ColumnFactors            factors[2][about_columns][heat_halvings];
     double                   ground_rho;
-    Course                   course;    /* while it is warmed up */
+    Course                   course; /* while it is warmed up */
     int64_t                  first, begun_index, shown;
     GroundWeather            weather[2]; /* at the state's time, and a step on, as far as that is worked at */
     double                   about_k[2]; /* temperature of the ground about, at both */
@@ -116,10 +116,10 @@ struct SceneryHeat {
 struct SceneryTemps {
     const SceneryHeat *heat;
     double             unix_s, share, air_k; /* share: between the walls' tables */
-    const float       *face_k;   /* [walls * columns] */
+    const float       *face_k;               /* [walls * columns] */
     float             *patch_k;
-    int               *first;    /* [states] of patch_k */
-    double (*r_enu_from_body)[9]; /* [movers] */
+    int               *first;       /* [states] of patch_k */
+    double (*r_enu_from_body)[9];   /* [movers] */
     float (*sun_k)[heat_day_slots]; /* [walls]; NULL: nothing is shaded */
 };
 

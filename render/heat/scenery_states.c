@@ -3,9 +3,9 @@
 
 #include <stdlib.h>
 
-static const double apart_m = 1e5;        /* no neighbours */
-static const double tick_s = 1;           /* of exercise time */
-static const double window_us = 1000;     /* of work in 0.1 s of exercise time, once the exercise has begun */
+static const double apart_m = 1e5;    /* no neighbours */
+static const double tick_s = 1;       /* of exercise time */
+static const double window_us = 1000; /* of work in 0.1 s of exercise time, once the exercise has begun */
 
 /* ---- what is about them ------------------------------------------------------------------------ */
 
@@ -152,11 +152,8 @@ static Status restart(SceneryStates *s)
                                        .capacity = scenery_most_states,
                                        .place = place_there,
                                        .user = s};
-    const VehicleHeatWorld   world = {.materials = &s->materials,
-                                      .table = c->parts,
-                                      .frame = c->frame,
-                                      .tracer = s->tracer,
-                                      .patches = &s->patches};
+    const VehicleHeatWorld   world = {
+          .materials = &s->materials, .table = c->parts, .frame = c->frame, .tracer = s->tracer, .patches = &s->patches};
     vehicle_heat_destroy(s->heat);
     s->heat = NULL;
     s->place_s = NAN;

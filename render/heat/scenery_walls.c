@@ -75,16 +75,16 @@ typedef struct WallJob {
 
 static void step_wall(void *user, int worker, int task)
 {
-    const WallJob     *job = user;
-    SceneryWalls      *w = job->walls;
-    SceneryWall       *wall = &w->wall[task];
-    double            *temp_k = w->now.temp_k + wall->first;
-    const int          nodes = wall->kind.column.nodes;
-    const HeatConfig  *c = &w->config->heat;
-    const double       middle_s = (double)w->now.index * c->step_s + 0.5 * job->dt_s;
-    const double       air_k = 0.5 * (job->before.weather->air.temp_k + job->after.weather->air.temp_k);
+    const WallJob      *job = user;
+    SceneryWalls       *w = job->walls;
+    SceneryWall        *wall = &w->wall[task];
+    double             *temp_k = w->now.temp_k + wall->first;
+    const int           nodes = wall->kind.column.nodes;
+    const HeatConfig   *c = &w->config->heat;
+    const double        middle_s = (double)w->now.index * c->step_s + 0.5 * job->dt_s;
+    const double        air_k = 0.5 * (job->before.weather->air.temp_k + job->after.weather->air.temp_k);
     const Construction *of = &wall->kind.of;
-    const double behind_k = wall_behind_k(of, solar_hour(w, middle_s), w->now.day_k, air_k, w->now.room_k[task]);
+    const double        behind_k = wall_behind_k(of, solar_hour(w, middle_s), w->now.day_k, air_k, w->now.room_k[task]);
     (void)worker;
     ColumnState state = {.halved = 0};
     for (int k = 0; k < w->columns; k++) {
@@ -97,9 +97,8 @@ static void step_wall(void *user, int worker, int task)
         temp_k += nodes;
     }
     if (of->inside == BEHIND_UNHEATED)
-        w->now.room_k[task] =
-            wall_room_step(of, w->now.room_k[task], inner_mean_k(w, wall, w->now.temp_k + wall->first), air_k,
-                           job->dt_s);
+        w->now.room_k[task] = wall_room_step(of, w->now.room_k[task],
+                                             inner_mean_k(w, wall, w->now.temp_k + wall->first), air_k, job->dt_s);
 }
 
 static double about_mean_k(const GroundColumn about[about_columns])
@@ -126,7 +125,8 @@ static int half_hour_of(double unix_s)
 /* A step is worked at in parts: what walls share, then each wall. */
 static void step_part(SceneryWalls *w, int part, double dt_s)
 {
-    const WallJob job = {w, dt_s, {&w->weather[0], w->about_k[0], w->ground_rho}, {&w->weather[1], w->about_k[1], w->ground_rho}};
+    const WallJob job = {
+        w, dt_s, {&w->weather[0], w->about_k[0], w->ground_rho}, {&w->weather[1], w->about_k[1], w->ground_rho}};
     if (part > 0) {
         step_wall((void *)&job, 0, part - 1);
         return;
@@ -240,8 +240,9 @@ static void start_about(SceneryWalls *w, double *ground_k, int count, double air
     const GroundWeather *at = w->course.at;
     double               sum[about_columns] = {0};
     for (int k = 0; k < about_columns; k++)
-        ground_column_start(&w->now.about[k], &w->config->ground->kind[k == about_paved ? SURFACE_BUILT : SURFACE_GRASS],
-                            &w->layers[k], air_k);
+        ground_column_start(&w->now.about[k],
+                            &w->config->ground->kind[k == about_paved ? SURFACE_BUILT : SURFACE_GRASS], &w->layers[k],
+                            air_k);
     for (int i = 0; i < count; i++) {
         ground_k[i] = about_mean_k(w->now.about);
         step_about(w, w->now.about, &at[i], &at[i + 1], (double)w->course.wide * c->step_s);
@@ -314,15 +315,16 @@ static void warm(SceneryWalls *w)
         const double dt_s = steps * c->step_s;
         w->weather[1] = *heat_course_at(&w->course, w->now.index + steps);
         step_part(w, 0, dt_s);
-        WallJob job = {w, dt_s, {&w->weather[0], w->about_k[0], w->ground_rho}, {&w->weather[1], w->about_k[1], w->ground_rho}};
+        WallJob job = {
+            w, dt_s, {&w->weather[0], w->about_k[0], w->ground_rho}, {&w->weather[1], w->about_k[1], w->ground_rho}};
         heat_run(c->pool, w->count, step_wall, &job);
         end_step(w, steps);
     }
     copy_state(&w->begun, &w->now, w);
 }
 
-/* K at the surface now for 1 W/m2 over each half hour of the day past. Film and emission as at 285 K in a wind of 3 m/s;
- * nothing through the inner face. */
+/* K at the surface now for 1 W/m2 over each half hour of the day past. Film and emission as at 285 K in a wind of 3
+ * m/s; nothing through the inner face. */
 static void find_memory(SceneryWall *wall)
 {
     static const double falls_w_m2k = 18;
@@ -341,7 +343,8 @@ static Status open_walls(SceneryWalls *w, const Materials *materials)
     Status            status = STATUS_OK;
     for (int i = 0; i < w->count && status == STATUS_OK; i++) {
         SceneryWall *wall = &w->wall[i];
-        status = wall_kind(&wall->kind, &w->config->constructions->row[wall->row], &materials->material[wall->material]);
+        status =
+            wall_kind(&wall->kind, &w->config->constructions->row[wall->row], &materials->material[wall->material]);
         if (status != STATUS_OK) break;
         heat_factors_of(wall->factors[0], &wall->kind.column, c->step_s);
         heat_factors_of(wall->factors[1], &wall->kind.column, (double)heat_half_hour(c) * c->step_s);
@@ -373,10 +376,10 @@ static CacheKey walls_key(const SceneryWalls *w)
 {
     const SceneryHeatConfig *config = w->config;
     const HeatConfig        *c = &config->heat;
-    const double  number[] = {c->grid.first_m, c->grid.growth, c->grid.depth_m, c->grid.tolerance_k, c->step_s,
-                              c->spin_up_s,    c->unix_s,      config->east_rad};
-    const int64_t whole[] = {c->facets, w->count, w->course.wide, w->course.coarse, w->course.fine};
-    CacheKey      key = cache_key("warm walls");
+    const double             number[] = {c->grid.first_m, c->grid.growth, c->grid.depth_m, c->grid.tolerance_k,
+                                         c->step_s,       c->spin_up_s,   c->unix_s,       config->east_rad};
+    const int64_t            whole[] = {c->facets, w->count, w->course.wide, w->course.coarse, w->course.fine};
+    CacheKey                 key = cache_key("warm walls");
     cache_key_add(&key, number, sizeof number);
     cache_key_add(&key, whole, sizeof whole);
     heat_kept_ground(&key, &config->ground->kind[SURFACE_GRASS]);
@@ -385,7 +388,7 @@ static CacheKey walls_key(const SceneryWalls *w)
         const SceneryWall  *wall = &w->wall[i];
         const Construction *of = &wall->kind.of;
         const int32_t       kind[] = {(int32_t)of->inside, of->layers};
-        const double        figure[] = {of->inside_w_m2k, of->room_day_k, of->room_night_k,      of->room_j_m2k,
+        const double        figure[] = {of->inside_w_m2k, of->room_day_k, of->room_night_k,       of->room_j_m2k,
                                         of->room_w_m2k,   of->rough,      wall->kind.absorptance, wall->kind.emissivity};
         cache_key_add(&key, kind, sizeof kind);
         cache_key_add(&key, figure, sizeof figure);
@@ -424,8 +427,9 @@ Status scenery_walls_open(SceneryWalls *w, const Materials *materials)
     CacheKey key = {.digest = NULL};
     if (c->cache) key = walls_key(w);
     for (int k = 0; k < about_columns; k++)
-        ground_column_start(&w->begun.about[k], &w->config->ground->kind[k == about_paved ? SURFACE_BUILT : SURFACE_GRASS],
-                            &w->layers[k], 0);
+        ground_column_start(&w->begun.about[k],
+                            &w->config->ground->kind[k == about_paved ? SURFACE_BUILT : SURFACE_GRASS], &w->layers[k],
+                            0);
     w->begun.index = w->begun_index;
     if (!c->cache || !kept_fetch(walls_kept, w, c->cache, &key)) {
         warm(w);

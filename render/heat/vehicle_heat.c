@@ -66,7 +66,8 @@ static Status cut_ahead(VehicleHeat *h, const Snapshot *snapshot, int *next)
     for (int m = 0; m < h->models; m++) ahead += h->world.patches->ahead[m] != NULL;
     for (; *next < snapshot->count && ahead < thread_processors(); ++*next) {
         const int m = snapshot->entity[*next].model;
-        if (m < 0 || m >= h->models || h->shaped[m] || !has_shape(h, m) || h->world.patches->cut[m] || h->world.patches->ahead[m])
+        if (m < 0 || m >= h->models || h->shaped[m] || !has_shape(h, m) || h->world.patches->cut[m] ||
+            h->world.patches->ahead[m])
             continue;
         const Status status = tracer_need(h->world.tracer, m);
         if (status != STATUS_OK) return status;

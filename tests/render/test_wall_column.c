@@ -1,5 +1,5 @@
-/* Walls and roofs against closed forms: resistances of EN ISO 6946, the steady flux out of a heated room, the response of
- * layers to a daily wave by transfer matrices (EN ISO 13786), films, a sheet after the sun. labels: physics */
+/* Walls and roofs against closed forms: resistances of EN ISO 6946, the steady flux out of a heated room, the response
+ * of layers to a daily wave by transfer matrices (EN ISO 13786), films, a sheet after the sun. labels: physics */
 #include "tests/check.h"
 #include "render/heat/wall_column_private.h"
 
@@ -177,7 +177,8 @@ static void a_daily_wave_is_that_of_transfer_matrices(void **state)
         }
         wall_flux(&law, &kind, &(WallPlace){&w[1], 280, 0}, &up);
         wall_flux_w_m2(&falls[0], mean_k, &law);
-        const double film = (wall_flux_w_m2(&falls[1], mean_k - 0.1, &law) - wall_flux_w_m2(&falls[1], mean_k + 0.1, &law)) / 0.2;
+        const double film =
+            (wall_flux_w_m2(&falls[1], mean_k - 0.1, &law) - wall_flux_w_m2(&falls[1], mean_k + 0.1, &law)) / 0.2;
         const double complex want = wave_w_m2 * response(&kind.of, film);
         print_message("%-22s wave of 2 W/m2: %.4f K, %.2f h late; by matrices %.4f K, %.2f h\n", of[k][0], cabs(sum),
                       -carg(sum) * 12 / pi_rad, cabs(want), -carg(want) * 12 / pi_rad);
@@ -185,8 +186,9 @@ static void a_daily_wave_is_that_of_transfer_matrices(void **state)
     }
 }
 
-/* Films in still air at 10 K, worked out by hand: 1.31 10^(1/3) of a wall; a warm roof 9.482 / 6.238, a cold one 1.810 /
- * 2.382 times that root. In wind of 5 m/s at 10 m, 3.693 m/s at the eaves: 0.5 (3.26 3.693^0.89 + 3.55 3.693^0.617). */
+/* Films in still air at 10 K, worked out by hand: 1.31 10^(1/3) of a wall; a warm roof 9.482 / 6.238, a cold one 1.810
+ * / 2.382 times that root. In wind of 5 m/s at 10 m, 3.693 m/s at the eaves: 0.5 (3.26 3.693^0.89 + 3.55 3.693^0.617).
+ */
 static void films_are_those_of_their_sources(void **state)
 {
     (void)state;
