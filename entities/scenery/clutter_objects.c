@@ -5,13 +5,13 @@
 #include <stdlib.h>
 
 /* Of what has stopped: what it did until then. */
-static EntityDrives drives_of(const ClutterRow *row, int mode)
+static EntityDrives drives_of(int mode)
 {
     static const double before = 0.8; /* of an engine that has stopped: between idling and full power; estimate */
     EntityDrives        drives = {0};
     if (mode == clutter_mode_idles) drives.engine = (float)drives_idle;
     else if (mode == clutter_mode_lives) drives.alive = 1;
-    else if (mode == clutter_mode_burns) drives.burning = (float)row->fire;
+    else if (mode == clutter_mode_burns) drives.burning = 1;
     else if (mode >= clutter_mode_stopped) drives.engine = (float)before;
     else if (mode >= clutter_mode_drives) {
         const double speed_mps = clutter_speed_mps[mode - clutter_mode_drives];
@@ -102,7 +102,7 @@ static Status add_thing(Added *a, ClutterWork *work, const ClutterThing *t)
         const int mode = coarse_mode(t->mode, a->grain), heading = coarse_heading(t->heading_rad, a->grain);
         *state = s->states;
         s->state[s->states++] = (SceneryState){.model = v->model,
-                                               .drives = drives_of(v->row, mode),
+                                               .drives = drives_of(mode),
                                                .heading_rad = (float)(2 * pi_rad * heading / clutter_headings),
                                                .stood_s = (float)stood_s_of(mode)};
     }

@@ -44,8 +44,6 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     if (row->running + row->recent > 1) return table_rows_refuse(rows, number, "recent", "at most 1 - running");
     if (row->heat != CLUTTER_ENGINE && row->running + row->recent > 0)
         return table_rows_refuse(rows, number, "running", "0 without an engine (heat)");
-    if ((row->heat == CLUTTER_BURNS) != (row->fire > 0))
-        return table_rows_refuse(rows, number, "fire", "0 but for what burns (heat), above 0 of that");
     if (row->heat == CLUTTER_DRIVES && row->where >= CLUTTER_YARDS)
         return table_rows_refuse(rows, number, "heat", "that of what stands: only on road, lane and track is driven");
     if (row->group_high > 1 && row->where < CLUTTER_AREAS)
@@ -72,7 +70,6 @@ Status clutter_table_read(ClutterTable *out, const char *path)
         {"heat", TABLE_CHOICE, FIELD(heat), .choices = "cold, engine, drives, lives, burns"},
         {"running", TABLE_DOUBLE, FIELD(running), .low = 0, .high = 1},
         {"recent", TABLE_DOUBLE, FIELD(recent), .low = 0, .high = 1},
-        {"fire", TABLE_DOUBLE, FIELD(fire), .low = 0, .high = 5, .absent = TABLE_LATER},
     };
     static const TableFormat format = {"clutter", columns, sizeof columns / sizeof *columns,
                                        "etc/clutter.csv explains the columns", .most_rows = clutter_most_rows};
@@ -81,6 +78,14 @@ Status clutter_table_read(ClutterTable *out, const char *path)
     if (!table) return STATUS_NO_MEMORY;
     const Status status = table_each(&format, path, &row, sizeof row, take_row, table);
     if (status == STATUS_OK) *out = *table;
+    free(table);
+    return status;
+}
+
+Status scenery_clutter_check(const char *path)
+{
+    ClutterTable *table = malloc(sizeof *table);
+    const Status  status = table ? clutter_table_read(table, path) : STATUS_NO_MEMORY;
     free(table);
     return status;
 }

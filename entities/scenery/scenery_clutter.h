@@ -40,6 +40,8 @@ typedef struct ClutterConfig {
 /* Density 1, 20000 objects, 256 that drive, 256 states, 0.01 m; the rest is zero. */
 ClutterConfig clutter_default_config(void);
 
+/* Whether a table can be used; logs what is wrong with it. */
+Status scenery_clutter_check(const char *path);
 /* Appends models, objects, states and movers. Models are added for what stands alone. 0.1 s for 1000 objects on 10 km2.
  * STATUS_BAD_VALUE: the table, or a figure of the configuration. On failure the scenery is as it was. */
 Status scenery_add_clutter(Scenery *scenery, const ClutterConfig *config);

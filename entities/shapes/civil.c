@@ -1,11 +1,12 @@
 /* entities/shapes/civil.c: civil vehicles and machines: van, box lorry, farm tractor, combine harvester, excavator,
  * generator on a trailer, tipping trailer, burnt-out car.
  *
- * Published length, width and height (manufacturers' data sheets): van: Mercedes Sprinter, standard wheelbase, high roof
- * 5.93 x 2.02 x 2.62 m; lorry: Mercedes Atego 1224 with a box of 7.3 m 9.15 x 2.55 x 3.65; tractor: Fendt 300 Vario 4.34 x
- * 2.32 x 2.86; combine: Claas Tucano 8.7 x 7.5 (header) x 3.95; excavator: Caterpillar 320, boom lowered 9.53 x 2.98 x
- * 3.16; generator: Atlas Copco QAS 60 on its trailer 3.90 x 1.60 x 1.85; farm_trailer: tandem tipper of 14 t 7.0 x 2.55 x
- * 2.75; wreck: as the car of wheeled.c, on its rims. What those leave open is an estimate. */
+ * Published length, width and height (manufacturers' data sheets): van: Mercedes Sprinter, standard wheelbase, high
+ * roof 5.93 x 2.02 x 2.62 m; lorry: Mercedes Atego 1224 with a box of 7.3 m 9.15 x 2.55 x 3.65; tractor: Fendt 300
+ * Vario 4.34 x 2.32 x 2.86; combine: Claas Tucano 8.7 x 7.5 (header) x 3.95; excavator: Caterpillar 320, boom
+ * lowered 9.53 x 2.98 x 3.16; generator: Atlas Copco QAS 60 on its trailer 3.90 x 1.60 x 1.85; farm_trailer: tandem
+ * tipper of 14 t 7.0 x 2.55 x 2.75; wreck: as the car of wheeled.c, on its rims. What those leave open is an estimate.
+ */
 #include "entities/shapes/parametric.h"
 #include "entities/shapes/parts_private.h"
 
@@ -87,8 +88,8 @@ static void build_tractor(MeshBuilder *b)
 {
     mesh_part(b, 0, "wings", "paint_machine_green", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) {
-        static const double wing[6][2] = {{-1.78, 0.95}, {-1.55, 1.62}, {-0.90, 1.86}, {-0.25, 1.62},
-                                          {-0.35, 1.55}, {-0.90, 1.78}};
+        static const double wing[6][2] = {{-1.78, 0.95}, {-1.55, 1.62}, {-0.90, 1.86},
+                                          {-0.25, 1.62}, {-0.35, 1.55}, {-0.90, 1.78}};
         parts_profile(b, 6, wing, side < 0 ? -1.12 : 0.62, side < 0 ? -0.62 : 1.12);
     }
     mesh_part(b, 0, "bonnet", "paint_machine_green", HEAT_ENGINE_DECK);
@@ -136,7 +137,8 @@ static void build_combine(MeshBuilder *b)
     static const double trough[4][2] = {{3.45, 0.08}, {4.35, 0.05}, {4.35, 0.12}, {3.50, 0.35}};
     parts_profile(b, 4, trough, -3.75, 3.75);
     static const double end[4][2] = {{3.4, 0.06}, {4.5, 0.05}, {4.45, 0.35}, {3.5, 1.15}};
-    for (int side = -1; side <= 1; side += 2) parts_profile(b, 4, end, side < 0 ? -3.75 : 3.69, side < 0 ? -3.69 : 3.75);
+    for (int side = -1; side <= 1; side += 2)
+        parts_profile(b, 4, end, side < 0 ? -3.75 : 3.69, side < 0 ? -3.69 : 3.75);
     static const double feeder[4][2] = {{1.3, 1.15}, {3.45, 0.35}, {3.45, 0.95}, {1.5, 1.80}};
     parts_profile(b, 4, feeder, -0.70, 0.70);
     mesh_part(b, 0, "reel", "metal_dark", HEAT_PASSIVE);
@@ -173,10 +175,12 @@ static void build_excavator(MeshBuilder *b)
     static const double boom[8][2] = {{0.55, 1.45}, {0.95, 1.35}, {2.2, 2.45}, {3.3, 2.75},
                                       {5.75, 2.25}, {5.85, 2.45}, {3.3, 3.10}, {1.9, 2.85}};
     parts_profile(b, 8, boom, -0.22, 0.22);
-    static const double stick[6][2] = {{6.05, 2.75}, {5.45, 2.20}, {5.45, 1.90}, {5.85, 1.95}, {6.35, 0.55}, {6.10, 2.55}};
+    static const double stick[6][2] = {{6.05, 2.75}, {5.45, 2.20}, {5.45, 1.90},
+                                       {5.85, 1.95}, {6.35, 0.55}, {6.10, 2.55}};
     parts_profile(b, 6, stick, -0.16, 0.16);
     mesh_part(b, 0, "bucket", "steel_worn", HEAT_PASSIVE);
-    static const double bucket[6][2] = {{6.45, 0.70}, {6.05, 0.85}, {5.55, 0.62}, {5.40, 0.25}, {5.60, 0.02}, {6.15, 0.05}};
+    static const double bucket[6][2] = {{6.45, 0.70}, {6.05, 0.85}, {5.55, 0.62},
+                                        {5.40, 0.25}, {5.60, 0.02}, {6.15, 0.05}};
     parts_profile(b, 6, bucket, -0.60, 0.60);
     mesh_part(b, 0, "cylinders", "steel_worn", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) parts_bar(b, 1.05, side * 0.32, 1.35, 2.8, side * 0.28, 2.72, 0.07);
@@ -238,7 +242,7 @@ static void build_farm_trailer(MeshBuilder *b)
 /* Burnt out: no glass, no tyres, sunk on its rims, bonnet and boot buckled. */
 static void build_wreck(MeshBuilder *b)
 {
-    static const double low[10][2] = {{-2.30, 0.22}, {-2.25, 0.10}, {2.20, 0.08}, {2.30, 0.20},  {2.30, 0.46},
+    static const double low[10][2] = {{-2.30, 0.22}, {-2.25, 0.10}, {2.20, 0.08}, {2.30, 0.20}, {2.30, 0.46},
                                       {2.05, 0.62},  {1.10, 0.74},  {0.9, 0.66},  {-1.6, 0.70}, {-2.28, 0.78}};
     mesh_part(b, 0, "body", "rust", HEAT_PASSIVE);
     parts_profile(b, 10, low, -0.86, 0.86);

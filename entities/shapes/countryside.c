@@ -1,10 +1,10 @@
 /* entities/shapes/countryside.c: cow, sheep, deer; hay bale; camp fire, burning barrel, smouldering heap.
  *
- * Sizes: cow: a dairy cow 2.5 m long, 1.45 m at the withers (Holstein: 1.45 .. 1.50, breed standards); sheep: 1.2 m long,
- * 0.7 m at the withers; deer: roe deer 1.2 m long, 0.72 m at the shoulder (Apollonio et al., European Ungulates, 2010);
- * bale: round, 1.25 m across, 1.2 m wide (makers' data); campfire: a bed of embers of 0.9 m with split logs; barrel:
- * 200 l drum 0.88 m high, 0.585 m across (ISO 15750), burning above its rim; smoulder: a heap 3 m across, 1.1 m high,
- * estimate. Wool, hide and fur are cloth over a body for their heat. */
+ * Sizes: cow: a dairy cow 2.5 m long, 1.45 m at the withers (Holstein: 1.45 .. 1.50, breed standards); sheep: 1.2 m
+ * long, 0.7 m at the withers; deer: roe deer 1.2 m long, 0.72 m at the shoulder (Apollonio et al., European Ungulates,
+ * 2010); bale: round, 1.25 m across, 1.2 m wide (makers' data); campfire: a bed of embers of 0.9 m with split logs and
+ * flames to 0.85 m; barrel: 200 l drum 0.88 m high, 0.585 m across (ISO 15750), flames 0.5 m over its rim; smoulder: a
+ * heap 3 m across, 1.1 m high, estimate. Wool, hide and fur are cloth over a body for their heat. */
 #include "entities/shapes/parametric.h"
 #include "entities/shapes/parts_private.h"
 
@@ -57,8 +57,10 @@ static void build_cow(MeshBuilder *b)
 
 static void build_sheep(MeshBuilder *b)
 {
-    const Station fleece[5] = {{-0.50, 0.12, -0.66, -0.42, 1},   {-0.36, 0.23, -0.72, -0.30, 0.95},
-                               {0.00, 0.26, -0.73, -0.28, 0.95}, {0.34, 0.21, -0.72, -0.32, 0.95},
+    const Station fleece[5] = {{-0.50, 0.12, -0.66, -0.42, 1},
+                               {-0.36, 0.23, -0.72, -0.30, 0.95},
+                               {0.00, 0.26, -0.73, -0.28, 0.95},
+                               {0.34, 0.21, -0.72, -0.32, 0.95},
                                {0.46, 0.12, -0.68, -0.44, 1}};
     mesh_part(b, 0, "fleece", "wool", HEAT_CLOTHING);
     mesh_loft(b, place_at(0, 0, 0), fleece, 5);
@@ -71,8 +73,10 @@ static void build_sheep(MeshBuilder *b)
 
 static void build_deer(MeshBuilder *b)
 {
-    const Station trunk[5] = {{-0.44, 0.08, -0.74, -0.56, 0.9}, {-0.32, 0.14, -0.76, -0.48, 0.9},
-                              {0.00, 0.15, -0.73, -0.42, 0.95}, {0.28, 0.13, -0.73, -0.44, 0.95},
+    const Station trunk[5] = {{-0.44, 0.08, -0.74, -0.56, 0.9},
+                              {-0.32, 0.14, -0.76, -0.48, 0.9},
+                              {0.00, 0.15, -0.73, -0.42, 0.95},
+                              {0.28, 0.13, -0.73, -0.44, 0.95},
                               {0.42, 0.08, -0.72, -0.54, 1}};
     mesh_part(b, 0, "body", "hide_brown", HEAT_CLOTHING);
     mesh_loft(b, place_at(0, 0, 0), trunk, 5);
@@ -91,16 +95,32 @@ static void build_bale(MeshBuilder *b)
     parts_box(b, -0.24, 0.24, -0.6, 0.6, 0, 0.08);
 }
 
-/* Stones would be as hot as the embers by what heats a fire, so there are none. */
+/* Tongues of flame about a middle: the lasting part of a buoyant flame, which its material makes thin. */
+static void flames(MeshBuilder *b, double base_m, double radius_m, double high_m)
+{
+    mesh_part(b, 0, "flames", "flame", HEAT_FIRE);
+    for (int i = 0; i < 5; i++) {
+        const double turn = 2 * pi_rad * i / 5, off = i ? 0.5 * radius_m : 0, h = high_m * (i ? 0.55 + 0.09 * i : 1);
+        const double r = radius_m * (i ? 0.34 : 0.5);
+        mesh_profile_begin(b, 0, 0);
+        mesh_profile_line(b, 0, 0.7 * r);
+        mesh_profile_line(b, 0.25 * h, r);
+        mesh_profile_line(b, 0.6 * h, 0.55 * r);
+        mesh_profile_line(b, h, 0);
+        mesh_lathe(b, place_axis(off * cos(turn), off * sin(turn), -base_m, 0.12 * cos(turn), 0.12 * sin(turn), -1));
+    }
+}
+
 static void build_campfire(MeshBuilder *b)
 {
-    mesh_part(b, 0, "embers", "charcoal", HEAT_PASSIVE);
+    mesh_part(b, 0, "embers", "charcoal", HEAT_EMBER);
     mesh_cone(b, place_axis(0, 0, 0, 0, 0, -1), 0, 0.45, 0.10, 0.25);
-    mesh_part(b, 0, "logs", "charcoal", HEAT_PASSIVE);
+    mesh_part(b, 0, "logs", "charcoal", HEAT_EMBER);
     for (int i = 0; i < 5; i++) {
         const double turn = 2 * pi_rad * i / 5 + 0.3, c = cos(turn), s = sin(turn), r = 0.05 + 0.008 * (i % 3);
         parts_bar(b, 0.48 * c, 0.48 * s, 0.06 + r, 0.04 * c, 0.04 * s, 0.34 + 0.03 * i, r);
     }
+    flames(b, 0.1, 0.26, 0.75);
 }
 
 static void build_barrel(MeshBuilder *b)
@@ -109,19 +129,23 @@ static void build_barrel(MeshBuilder *b)
     mesh_part(b, 0, "drum", "rust", HEAT_PASSIVE);
     mesh_tube(b, up, 0, 0.88, 0.285, 0.280);
     for (int i = 0; i < 2; i++) mesh_tube(b, up, 0.28 + 0.29 * i, 0.31 + 0.29 * i, 0.2925, 0.284);
-    mesh_part(b, 0, "embers", "charcoal", HEAT_PASSIVE);
+    mesh_part(b, 0, "embers", "charcoal", HEAT_EMBER);
     mesh_cone(b, up, 0.02, 0.279, 0.80, 0.279);
     for (int i = 0; i < 3; i++) {
         const double turn = 2.1 * i;
         parts_bar(b, 0.15 * cos(turn), 0.15 * sin(turn), 0.5, -0.12 * cos(turn), -0.2 * sin(turn), 1.02, 0.035);
     }
+    flames(b, 0.8, 0.25, 0.6);
 }
 
 static void build_smoulder(MeshBuilder *b)
 {
-    mesh_part(b, 0, "heap", "charcoal", HEAT_PASSIVE);
-    static const double lump[5][4] = {
-        {0, 0, 1.5, 1.1}, {0.7, 0.4, 0.9, 0.75}, {-0.6, 0.6, 0.85, 0.7}, {-0.4, -0.7, 0.9, 0.65}, {0.6, -0.6, 0.8, 0.6}};
+    mesh_part(b, 0, "heap", "ash_crust", HEAT_SMOULDER);
+    static const double lump[5][4] = {{0, 0, 1.5, 1.1},
+                                      {0.7, 0.4, 0.9, 0.75},
+                                      {-0.6, 0.6, 0.85, 0.7},
+                                      {-0.4, -0.7, 0.9, 0.65},
+                                      {0.6, -0.6, 0.8, 0.6}};
     for (int i = 0; i < 5; i++) {
         const double *l = lump[i];
         mesh_profile_begin(b, 0, 0);

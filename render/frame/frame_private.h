@@ -105,6 +105,24 @@ typedef struct TargetSums {
     double       cosine3[hits_capacity]; /* of the block's pixels */
 } TargetSums;
 
+/* ---- sums over scenery: scenery_sums.c ------------------------------------------------------- */
+
+/* What a worker's samples showed of an object: in integers and extremes, independent of the order of threads. */
+typedef struct ScenerySum {
+    uint32_t instance; /* of Hits; 0: a free slot */
+    int64_t  steps;    /* area, in steps; what small targets cover is left out */
+    int      box[4];
+    double   nearest_m;
+    float    hottest_k; /* -INFINITY: not known */
+} ScenerySum;
+
+/* Every object that a worker met: a growing hash table. */
+typedef struct ScenerySums {
+    ScenerySum *slot; /* [capacity] */
+    size_t      capacity, used;
+    bool        lost; /* out of memory: the sums are incomplete */
+} ScenerySums;
+
 Status target_sums_create(TargetSums *out, int entities, int profile_bins, Arena *arena);
 /* Steps and quanta for a request. */
 void sum_rules_choose(SumRules *rules, const RenderRequest *request, const RadarConfig *radar);
@@ -119,6 +137,14 @@ typedef struct SharedBlock {
     double            share;
 } SharedBlock;
 
+/* A sample's area in steps, which divide by every share, and the part of it that no small target covers. */
+int64_t target_sums_steps(int64_t *seen, const SumRules *rules, const SharedBlock *of, size_t px);
+/* The block's scenery: areas, of samples as they were shot, and temperatures, once they are known. */
+void scenery_sums_area(ScenerySums *sums, const SumRules *rules, const SharedBlock *of);
+void scenery_sums_heat(ScenerySums *sums, const SumRules *rules, const Samples *s);
+/* All workers' clutter that is seen into the picture, by object. STATUS_NO_MEMORY. */
+Status scenery_sums_gather(Picture *picture, const SumRules *rules, const ScenerySums *const *sums, int workers,
+                           const Scenery *scenery, Arena *arena);
 /* The visible and amodal area of the listed entities: all that the block can show. */
 void target_sums_areas(TargetSums *sums, const SumRules *rules, const SharedBlock *of, const int *list, int listed,
                        VisibilityCounters *counters);
@@ -163,6 +189,7 @@ typedef struct Worker {
     Samples        samples;
     PixelBlock     block; /* base and edges, error estimate */
     TargetSums     sums;
+    ScenerySums    scenery;
     RenderCounters counters; /* without visibility, which is in shader.counters */
     int           *list;     /* [snapshot count]: entities */
     int           *outline;  /* [snapshot count]: those whose areas are sampled again */

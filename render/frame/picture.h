@@ -109,6 +109,15 @@ typedef struct TargetPixels {
     int    occluder;           /* snapshot index of the entity that hides most; -1 */
 } TargetPixels;
 
+/* Clutter (entities/scenery) that samples of this view show, what small targets cover left out. */
+typedef struct SceneryPixels {
+    int    object;    /* of Scenery.object */
+    double visible;   /* px, parts of pixels too */
+    int    box[4];    /* as TargetPixels.box */
+    double range_m;   /* of its nearest sample */
+    double hottest_k; /* of its samples; NaN: not known */
+} SceneryPixels;
+
 /* Smaller than this one way, and than the other the other way, a target is sampled on its own grid. */
 enum { small_target_px = 16, small_target_long_px = 4 * small_target_px };
 
@@ -169,8 +178,10 @@ typedef struct Picture {
     float         *normal[3];   /* ENU of the terrain origin */
     float         *covered;     /* share of the pixel that small targets cover; NULL: there are none */
     TargetPixels  *target;      /* [snapshot count]; NULL without truth */
-    SmallTargets   small;       /* none: not requested */
-    ErrorBudget   *budget;      /* NULL: not requested */
+    SceneryPixels *scenery;     /* [scenery_count]: clutter that is seen, by object; with truth alone */
+    int            scenery_count;
+    SmallTargets   small;  /* none: not requested */
+    ErrorBudget   *budget; /* NULL: not requested */
     RenderCounters counters;
     RenderTimes    times;
 } Picture;

@@ -144,10 +144,12 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
 /* Sums over workers and target grids, into the picture. */
 static Status gather_sums(Job *job, int workers, Arena *arena)
 {
-    Picture           *picture = job->picture;
-    const TargetSums **sums = arena_alloc(arena, (size_t)workers, sizeof *sums);
-    if (!sums) return STATUS_NO_MEMORY;
+    Picture            *picture = job->picture;
+    const TargetSums  **sums = arena_alloc(arena, (size_t)workers, sizeof *sums);
+    const ScenerySums **scenery = arena_alloc(arena, (size_t)workers, sizeof *scenery);
+    if (!sums || !scenery) return STATUS_NO_MEMORY;
     for (int k = 0; k < workers; k++) {
+        scenery[k] = &job->worker[k]->scenery;
         const Worker  *w = job->worker[k];
         RenderCounters counters = w->counters;
         sums[k] = &w->sums;
@@ -165,6 +167,9 @@ static Status gather_sums(Job *job, int workers, Arena *arena)
                            .boxes = job->boxes};
     const Status     status = target_sums_gather(picture, &job->rules, &of, arena);
     if (status == STATUS_OK && picture->target) target_grids_sample(job);
+    const SceneryTracer *tracer = job->scene.world->scenery;
+    if (status == STATUS_OK && picture->target && tracer)
+        return scenery_sums_gather(picture, &job->rules, scenery, workers, scenery_tracer_of(tracer), arena);
     return status;
 }
 

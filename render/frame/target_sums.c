@@ -151,8 +151,7 @@ static void merge_box(int box[4], const int other[4])
     grow_box(box, other[2] - 1, other[3] - 1);
 }
 
-/* A sample's area in steps, which divide by every share, and the part of it that no small target covers. */
-static int64_t sample_steps(int64_t *seen, const SumRules *rules, const SharedBlock *of, size_t px)
+int64_t target_sums_steps(int64_t *seen, const SumRules *rules, const SharedBlock *of, size_t px)
 {
     const int64_t whole = llrint((double)rules->steps_per_px * of->share / (of->block->n * of->block->n));
     const double  covered = rules->picture->covered ? (double)rules->picture->covered[px] : 0;
@@ -169,7 +168,7 @@ static void count_seen(TargetSums *sums, int index, const SumRules *rules, const
     const size_t      px = picture_index(rules->picture, x, y);
     TargetCount      *count = &sums->target[index];
     int64_t           seen;
-    const int64_t     whole = sample_steps(&seen, rules, of, px);
+    const int64_t     whole = target_sums_steps(&seen, rules, of, px);
     count->visible += seen;
     for (int b = 0; b < BAND_COUNT && s->smoke.any; b++)
         count->veiled[b] += llrint((double)seen * samples_smoke_taken(s, rules->smoke_channel[b], sample));
@@ -222,7 +221,7 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const SharedBloc
             if (!sums->meets[k]) continue;
             const int     i = sums->some_index[k], x = block->x[i / samples], y = block->y[i / samples];
             int64_t       seen;
-            const int64_t whole = sample_steps(&seen, rules, of, picture_index(rules->picture, x, y));
+            const int64_t whole = target_sums_steps(&seen, rules, of, picture_index(rules->picture, x, y));
             count->amodal += whole;
             grow_box(count->amodal_box, x, y);
             if (s->hits.entity[i]) {
