@@ -6,6 +6,7 @@ static const double moving_mps = 0.3;  /* the limit of drives.c */
 static const double stood_s = 60;      /* shorter stands leave no mark */
 static const double near_ground_m = 3; /* the elevation of senders differs from ours by metres */
 static const double gravity_mps2 = 9.80665;
+static const double stood_least_s = 300, stood_most_s = 3 * 86400, again_s = 3600;
 
 /* ---- the entity ------------------------------------------------------------------------------- */
 
@@ -88,11 +89,20 @@ static void set_place(GroundStand *stand, const EntityTable *table, const Entity
     memcpy(stand->r_ecef_from_body, e.r_ecef_from_body, sizeof stand->r_ecef_from_body);
 }
 
+/* How long it has stood that stands at its first report. Nothing in DIS says so. */
+static double stood_before_s(const EntityTable *table, const EntitySlot *slot)
+{
+    enum { stream = 83 };
+    if (!isnan(table->config.stood_s)) return table->config.stood_s;
+    return stood_least_s * pow(stood_most_s / stood_least_s,
+                               random_uniform(table->config.seed, stream, 0, entity_key(slot->id)));
+}
+
 static void begin_stand(EntityTable *table, EntitySlot *slot, const double p_ecef[3], bool is_first, double t_s)
 {
     EntityMarks *m = marks_of(table, slot);
     m->stands = true;
-    m->from_s = is_first ? t_s - table->config.ambient_s : t_s;
+    m->from_s = is_first ? t_s - stood_before_s(table, slot) : t_s;
     m->stand = 0;
     m->blow = (GroundBlow){0};
     memcpy(m->p_ecef, p_ecef, sizeof m->p_ecef);
@@ -100,7 +110,7 @@ static void begin_stand(EntityTable *table, EntitySlot *slot, const double p_ece
     if (!is_first) return;
     GroundStand stand = {.from_s = m->from_s, .to_s = lasts_until_s(slot), .owner = entity_key(slot->id) + 1};
     set_place(&stand, table, slot, m);
-    m->stand = ground_stand_again(&m->from_s, table->ground, &stand, t_s - table->config.ambient_s);
+    m->stand = ground_stand_again(&m->from_s, table->ground, &stand, t_s - again_s);
     if (m->stand) ground_stand_until(table->ground, m->stand, stand.to_s);
 }
 

@@ -14,7 +14,7 @@ EntityTableConfig entity_table_default_config(void)
                                .timeout_land_v7_s = 132,
                                .extrapolation_limit_s = 12,
                                .rate_limit_rps = 20,
-                               .ambient_s = 3600,
+                               .stood_s = 3600,
                                .new_per_s = 65536};
 }
 
@@ -24,7 +24,7 @@ static bool config_is_usable(const EntityTableConfig *config)
                                 config->rate_limit_rps};
     for (int i = 0; i < 4; i++)
         if (!(positive[i] > 0 && positive[i] <= 1e6)) return false;
-    return config->capacity > 0 && config->capacity <= capacity_limit && config->shown > 0 && config->ambient_s >= 0 &&
+    return config->capacity > 0 && config->capacity <= capacity_limit && config->shown > 0 && !(config->stood_s < 0) &&
            config->new_per_s >= 1 && config->new_per_s <= 1e9;
 }
 

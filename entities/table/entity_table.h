@@ -28,7 +28,9 @@ typedef struct EntityTableConfig {
                                      timeout get a limit longer in proportion, since their heartbeat is longer too */
     double rate_limit_rps;        /* larger angular rates are not extrapolated: 20 */
     double new_per_s;             /* entities a sender may add per second, and at once; 65536: as many as it has ids */
-    double ambient_s;             /* time for which a new entity is assumed to have been in its first state; 3600 */
+    double stood_s; /* time for which what stands at its first report has stood: 3600; NAN: drawn for each, of seed and
+                       id, from stood_least_s to stood_most_s, as often of each order of magnitude */
+    uint64_t seed;
     Pool *pool; /* pool that helps with snapshots; NULL: the caller works alone. The result has the same bits either way
                  */
     ContactGround ground; /* ground that entities are clamped to in every pose; none: they are not clamped */

@@ -26,7 +26,7 @@ typedef struct GroundBlow {
 } GroundBlow;
 
 /* An entity that stood still within 0.5 m and 5 degrees for 60 s or more, or stands: recorded with the first report
- * that finds it so. One that first appears standing is taken to have stood for EntityTableConfig.ambient_s before:
+ * that finds it so. One that first appears standing is taken to have stood for EntityTableConfig.stood_s before:
  * from_s is its first report less that, and to have run its engine for the last hour if it does then. An engine that
  * starts again begins another stand. Ends with the report that shows it moved or turned, its removal, or its
  * timeout. */

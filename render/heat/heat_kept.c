@@ -67,6 +67,7 @@ static void pass_past(Kept *kept, HeatPast *past)
     kept_floats(kept, past->sun_k[0], (size_t)ground_kinds * heat_past);
     kept_floats(kept, past->sky_k[0], (size_t)ground_kinds * heat_past);
     kept_floats(kept, past->effusivity, ground_kinds);
+    kept_floats(kept, past->diffusivity, ground_kinds);
 }
 
 static void pass_table(Kept *kept, GroundHeatTable *table)

@@ -93,6 +93,12 @@ int heat_past_begin(Heat *h, HeatPast *out, Interval interval[heat_past])
         memcpy(out->sun_d_enu[i], w.sun_d_enu, sizeof w.sun_d_enu);
     }
     for (int k = 1; k < ground_kinds; k++) /* of the first element: its half and its conductance have the same size */
-        out->effusivity[k] = (float)sqrt(2 * h->layers[k].capacity_j_m2k[0] * h->layers[k].conductance_w_m2k[0]);
+    {
+        const Column *c = &h->layers[k];
+        const double  capacity = c->capacity_j_m2k[0], conductance = c->conductance_w_m2k[0];
+        const double  apart_m = c->depth_m[1] - c->depth_m[0]; /* conductivity over capacity of the volume */
+        out->effusivity[k] = (float)sqrt(2 * capacity * conductance);
+        out->diffusivity[k] = (float)(conductance * apart_m * apart_m / (2 * capacity));
+    }
     return count;
 }

@@ -1,6 +1,7 @@
 /* render/heat/mark_heat.c: the heat that vehicles leave on the ground: where they stood, drove and burnt (heat.h). */
 #include "render/heat/heat.h"
 
+#include "render/heat/stand_heat_private.h"
 #include "render/heat/vehicle_load_private.h"
 #include "render/heat/surface_flux_private.h"
 
@@ -8,7 +9,8 @@ static const double cell_m = 32, least_sun = 0.1; /* lower suns cast no lasting 
 static const double touches_m = 1.5;              /* of a mark's height over the ground that it belongs to */
 
 typedef struct Stand {
-    double         p_enu[3], axis[3][3], low_m[3], high_m[3], from_s, to_s, reach_m;
+    StandBox       box;
+    double         reach_m;
     double         blow_from_s, blow_to_s;
     const JetPath *jet; /* NULL: none reaches the ground */
 } Stand;
@@ -93,15 +95,16 @@ static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exer
            .radius_m = (double)b->radius_m, .speed_mps = (double)b->speed_mps, .excess_k = (double)b->excess_k};
     double at_enu[3], d_enu[3] = {0};
     if (!(b->to_s > b->from_s) || !(jet.radius_m > 0 && jet.speed_mps > 0 && jet.excess_k > 0)) return STATUS_OK;
-    memcpy(at_enu, out->p_enu, sizeof at_enu);
+    const double *p_enu = out->box.p_enu;
+    memcpy(at_enu, p_enu, sizeof at_enu);
     for (int a = 0; a < 3; a++) {
-        v3_add_scaled(at_enu, at_enu, (double)b->at_m[a], out->axis[a]);
-        v3_add_scaled(d_enu, d_enu, (double)b->d[a], out->axis[a]);
+        v3_add_scaled(at_enu, at_enu, (double)b->at_m[a], out->box.axis[a]);
+        v3_add_scaled(d_enu, d_enu, (double)b->d[a], out->box.axis[a]);
     }
     if (!v3_normalize(d_enu, d_enu)) return STATUS_OK;
     JetPath found;
     jet_path(&found, &jet, at_enu, d_enu, still, air_k);
-    if (found.count < 2 || found.box.low_m[2] > out->p_enu[2] + touches_m) return STATUS_OK;
+    if (found.count < 2 || found.box.low_m[2] > p_enu[2] + touches_m) return STATUS_OK;
     JetPath *path = arena_alloc(arena, 1, sizeof *path);
     if (!path) return STATUS_NO_MEMORY;
     *path = found;
@@ -109,7 +112,7 @@ static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exer
     out->blow_from_s = exercise_s + b->from_s, out->blow_to_s = exercise_s + b->to_s;
     for (int k = 0; k < 2; k++)
         out->reach_m =
-            fmax(out->reach_m, fmax(path->box.high_m[k] - out->p_enu[k], out->p_enu[k] - path->box.low_m[k]));
+            fmax(out->reach_m, fmax(path->box.high_m[k] - p_enu[k], p_enu[k] - path->box.low_m[k]));
     return STATUS_OK;
 }
 
@@ -121,22 +124,23 @@ static bool near_enough(const double p_enu[3])
 
 static Status take_stand(MarkHeat *m, const GroundStand *s, const LocalFrame *frame, double exercise_s, Arena *arena)
 {
-    Stand *out = &m->stand[m->stands];
-    enu_from_ecef(out->p_enu, frame, s->p_ecef);
+    Stand    *out = &m->stand[m->stands];
+    StandBox *box = &out->box;
+    enu_from_ecef(box->p_enu, frame, s->p_ecef);
     for (int a = 0; a < 3; a++) {
         double axis_ecef[3];
         for (int k = 0; k < 3; k++) axis_ecef[k] = s->r_ecef_from_body[3 * k + a];
-        m3_tmul_v3(out->axis[a], frame->r_ecef_from_enu, axis_ecef);
-        out->low_m[a] = (double)s->low_m[a], out->high_m[a] = (double)s->high_m[a];
+        m3_tmul_v3(box->axis[a], frame->r_ecef_from_enu, axis_ecef);
+        box->low_m[a] = (double)s->low_m[a], box->high_m[a] = (double)s->high_m[a];
     }
-    const double high_m = fmin(fmax(-out->low_m[2], 0), 40);
-    out->from_s = exercise_s + s->from_s, out->to_s = exercise_s + s->to_s;
+    const double high_m = fmin(fmax(-box->low_m[2], 0), 40);
+    box->from_s = exercise_s + s->from_s, box->to_s = exercise_s + s->to_s;
     out->reach_m =
-        fmin(0.5 * hypot(out->high_m[0] - out->low_m[0], out->high_m[1] - out->low_m[1]) + high_m / least_sun, 120);
+        fmin(0.5 * hypot(box->high_m[0] - box->low_m[0], box->high_m[1] - box->low_m[1]) + high_m / least_sun, 120);
     out->jet = NULL;
-    if (!near_enough(out->p_enu)) return STATUS_OK;
+    if (!near_enough(box->p_enu)) return STATUS_OK;
     const Status status = blow_of(out, &s->blow, m->now->table.air_k, exercise_s, arena);
-    if (out->reach_m > 0) put_square(m, m->stands++, out->p_enu, fmin(out->reach_m, 120));
+    if (out->reach_m > 0) put_square(m, m->stands++, box->p_enu, fmin(out->reach_m, 120));
     return status;
 }
 
@@ -198,75 +202,6 @@ Status heat_marks_create(MarkHeat **out, const GroundMarks *marks, const LocalFr
 }
 
 /* ---- heat -------------------------------------------------------------------------------------- */
-
-/* Whether a ray from p meets the stand's box. */
-static bool box_hides(const Stand *s, const double p_enu[3], const double d_enu[3])
-{
-    double near_m = 0, far_m = INFINITY, from[3];
-    v3_sub(from, p_enu, s->p_enu);
-    for (int a = 0; a < 3; a++) {
-        const double o = v3_dot(from, s->axis[a]), d = v3_dot(d_enu, s->axis[a]);
-        const double t0 = (s->low_m[a] - o) / d, t1 = (s->high_m[a] - o) / d;
-        if (fabs(d) < 1e-12) {
-            if (o < s->low_m[a] || o > s->high_m[a]) return false;
-            continue;
-        }
-        near_m = fmax(near_m, fmin(t0, t1));
-        far_m = fmin(far_m, fmax(t0, t1));
-    }
-    return near_m < far_m;
-}
-
-/* Share of an even sky that the box hides from level ground there: 32 directions, even over the cosine. */
-static double hidden_share(const Stand *s, const double p_enu[3])
-{
-    enum { rings = 4, around = 8 };
-    int hidden = 0;
-    for (int r = 0; r < rings; r++)
-        for (int a = 0; a < around; a++) {
-            const double flat = sqrt((r + 0.5) / rings), turn = (a + 0.5 * (r % 2)) * 2 * pi_rad / around;
-            const double d[3] = {flat * cos(turn), flat * sin(turn), sqrt(1 - flat * flat)};
-            hidden += box_hides(s, p_enu, d);
-        }
-    return (double)hidden / (rings * around);
-}
-
-/* Towards the sun at a time near interval i of the past: straight between the middles of two intervals. */
-static void sun_then(double d_enu[3], const HeatPast *p, int i, double unix_s)
-{
-    const int    to = unix_s > p->unix_s[i] ? i - 1 : i + 1;
-    const int    other = to >= 0 && to < p->count ? to : i;
-    const double gap_s = p->unix_s[other] - p->unix_s[i], share = gap_s != 0 ? (unix_s - p->unix_s[i]) / gap_s : 0;
-    double       d[3];
-    for (int k = 0; k < 3; k++) d[k] = p->sun_d_enu[i][k] + share * (p->sun_d_enu[other][k] - p->sun_d_enu[i][k]);
-    if (!v3_normalize(d_enu, d)) memcpy(d_enu, p->sun_d_enu[i], sizeof p->sun_d_enu[i]);
-}
-
-/* Kelvins that the stand took from the ground, by one time of the grid. Samples ten minutes apart. */
-static double stand_k(const MarkHeat *m, const Stand *s, const HeatPast *p, int kind, const double p_enu[3],
-                      const double n_enu[3], double lit)
-{
-    double taken_k = 0, sky_k = 0;
-    for (int i = 0; i < p->count; i++) {
-        const double begin_s = p->unix_s[i] - 0.5 * p->span_s[i], end_s = begin_s + p->span_s[i];
-        if (end_s <= s->from_s) break; /* newest first */
-        const double share = (fmin(end_s, s->to_s) - fmax(begin_s, s->from_s)) / p->span_s[i];
-        if (!(share > 0)) continue;
-        sky_k += share * (double)p->sky_k[kind][i];
-        if (p->sun_k[kind][i] == 0) continue;
-        const double from_s = fmax(begin_s, s->from_s), span_s = fmin(end_s, s->to_s) - from_s;
-        const int    parts = (int)fmax(1, ceil(span_s / 600 - 1e-6));
-        double       along = 0;
-        for (int k = 0; k < parts; k++) {
-            double d_enu[3];
-            sun_then(d_enu, p, i, from_s + (k + 0.5) / parts * span_s);
-            const double cosine = v3_dot(d_enu, n_enu);
-            if (cosine > 0 && d_enu[2] > 0 && box_hides(s, p_enu, d_enu)) along += cosine / parts;
-        }
-        taken_k += share * along * (double)p->sun_k[kind][i] * lit;
-    }
-    return m->sun_scale[kind] * taken_k + (sky_k != 0 ? m->sky_scale[kind] * sky_k * hidden_share(s, p_enu) : 0);
-}
 
 /* Kelvins that the stand's exhaust gave the ground, by one time of the grid. */
 static double blow_k(const Stand *s, const HeatPast *p, int kind, double excess_k, double speed_mps)
@@ -337,11 +272,10 @@ bool heat_marks_at(MarkedGround *out, const MarkHeat *m, int kind, const double 
         any = true;
         if (at->mark < m->stands) {
             const Stand *s = &m->stand[at->mark];
-            if (hypot(p_enu[0] - s->p_enu[0], p_enu[1] - s->p_enu[1]) > s->reach_m) continue;
-            const double before_k = stand_k(m, s, &m->now->past[0], kind, from_enu, n_enu, lit);
-            const double after_k = stand_k(m, s, &m->now->past[1], kind, from_enu, n_enu, lit);
-            double       excess_k, speed_mps;
-            out->add_k -= before_k + m->now->share * (after_k - before_k);
+            if (hypot(p_enu[0] - s->box.p_enu[0], p_enu[1] - s->box.p_enu[1]) > s->reach_m) continue;
+            double excess_k, speed_mps;
+            out->add_k -= stand_taken_k(&s->box, m->now, m->unix_s, kind, from_enu, n_enu, lit, m->sun_scale[kind],
+                                        m->sky_scale[kind]);
             if (!s->jet || !jet_path_at(&excess_k, &speed_mps, NULL, s->jet, p_enu, true)) continue;
             const double blew_k = blow_k(s, &m->now->past[0], kind, excess_k, speed_mps);
             out->add_k += blew_k + m->now->share * (blow_k(s, &m->now->past[1], kind, excess_k, speed_mps) - blew_k);

@@ -202,8 +202,8 @@ static Status listen_first(bool *heard, Live *l)
                 log_info("run: heard the first entity; listening for %g s (exercise.listen_s)",
                          config->exercise.listen_s);
                 log_info(
-                    "run: what stood or drove before is not known%s; what stands at its first report is taken to have "
-                    "stood there for an hour",
+                    "run: what stood or drove before is not known%s; for what stands at its first report, a time for "
+                    "which it has stood there is drawn (heat.stood_min)",
                     *config->heat.marks ? " beyond heat.marks" : " (heat.marks)");
             } else if (l->received_count >= 4 * player_opening_before) {
                 drop_received(l, l->received_count - player_opening_before);

@@ -276,6 +276,9 @@ enum { config_paths_size = 4096 };
     ROW(INT, heat., facets, 7, 3, 17, "", "slopes and azimuths of the ground's heat: a grid of so many a side, odd") \
     ROW(DOUBLE, heat., shadow_m, 16, 0, 1000, "m", \
         "cells of the shadows that relief and plants cast over the day; 0: no shadow cools the ground") \
+    ROW(DOUBLE, heat., stood_min, NAN, 0, 20000, "min", \
+        "how long what stands at its first report has stood, for the cold ground of its shadow; unset: drawn for each " \
+        "by seed and id, from 5 minutes to 3 days") \
     ROW(PATH, heat., given, "", 1024, \
         "file of temperatures of parts over exercise time (CSV: entity, part, t_s, temp_k) that are shown " \
         "instead of those worked out; empty: none") \

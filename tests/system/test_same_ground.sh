@@ -16,9 +16,9 @@ vehicles:
   - {name: Truck, id: 2, type: 1.1.222.7.1.0.0, route_m: [[-260, 15], [300, 40]], speed_mps: 9}
 YAML
 exercise "$tmp/later.yaml" "$tmp/later.pcap"
-look=(--size 64x48 --bands optical,lwir --host observer --set exercise.aim=1:3001:1 --set observer.range_m=60
+look=(--size 32x24 --bands optical --host observer --set exercise.aim=1:3001:1 --set observer.range_m=60
     --set observer.height_m=40 --set observer.rate_dps=0 --set sensor.hfov_deg=50 --set exercise.listen_s=0.5 --no-png
-    --set terrain.woods_half_m=300 --set terrain.spacing_m=8)
+    --set terrain.woods_half_m=150 --set terrain.spacing_m=8)
 # seen OUT LOG TIME options: one frame, named as if it were the first
 seen() {
     local out=$1 log=$2 at=$3 file; shift 3

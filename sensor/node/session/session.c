@@ -23,6 +23,8 @@ static Status open_session(Session *s)
     table.capacity = shared->config->entities.capacity;
     table.shown = shared->config->entities.shown;
     table.new_per_s = shared->config->entities.new_per_s;
+    table.stood_s = 60 * shared->config->heat.stood_min;
+    table.seed = (uint64_t)shared->config->seed;
     table.timeout_s = shared->config->entities.timeout_s;
     table.timeout_land_v7_s = shared->config->entities.timeout_land_v7_s;
     table.extrapolation_limit_s = shared->config->entities.extrapolation_limit_s;
