@@ -45,6 +45,6 @@ Status parametric_rotorcraft(Model *out, const char *name, double sag_m);
 Status parametric_vessel(Model *out, const char *name, double sag_m);
 Status parametric_munition(Model *out, const char *name, double sag_m);
 Status parametric_structure(Model *out, const char *name, double sag_m);
-Status parametric_cover(Model *out, const char *name, double sag_m);     /* cover.c */
+Status parametric_cover(Model *out, const char *name, double sag_m); /* cover.c */
 
 #endif
