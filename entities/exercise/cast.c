@@ -127,7 +127,7 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s)
         forward[0] = sin(own->heading_rad), forward[1] = cos(own->heading_rad);
         left[0] = -forward[1], left[1] = forward[0];
     }
-    const bool   stands = g->route_m.count == 2;
+    const bool stands = g->route_m.count == 2;
     if (stands) speed_mps = 0; /* a stationary entity's route only gives its heading */
     else curvature = (at.d[0] * at.dd[1] - at.d[1] * at.dd[0]) / (along * along * along);
 

@@ -143,8 +143,7 @@ static Status make_route(Cast *cast, int group, bool flies)
         point[i][2] = flies ? exercise_ground_at(NULL, &cast->ground, point[i][0], point[i][1]) + g->height_m : 0;
     }
     if (count == 1) { /* stationary: a metre of route gives its heading */
-        const double heading_rad =
-            ((isnan(g->heading_deg) ? 0 : g->heading_deg) + s->place.turn_deg) * rad_per_deg;
+        const double heading_rad = ((isnan(g->heading_deg) ? 0 : g->heading_deg) + s->place.turn_deg) * rad_per_deg;
         memcpy(point[1], point[0], sizeof point[1]);
         point[1][0] += sin(heading_rad);
         point[1][1] += cos(heading_rad);

@@ -1,7 +1,7 @@
 /* entities/exercise/cast_hide.c: places of the entities that hide, and of the nets over entities. */
 #include "entities/exercise/cast_private.h"
 
-#include "entities/exercise/hide_private.h"
+#include "entities/exercise/hide.h"
 
 #include <stdlib.h>
 
@@ -101,7 +101,7 @@ static Status hide_one(Hiding *h, const HideGround *ground, int group, int entit
 
 static Status hide_group(Hiding *h, int group)
 {
-    static const double sight_m = 320; /* so far plants can hide what is not low on the horizon */
+    static const double  sight_m = 320; /* so far plants can hide what is not low on the horizon */
     Cast                *cast = h->cast;
     const Scenario      *s = cast->scenario;
     const ScenarioGroup *g = &s->group[group];
@@ -130,8 +130,8 @@ static Status hide_group(Hiding *h, int group)
 static void lay_nets(Hiding *h, int group)
 {
     static const struct {
-        double  long_m, high_m; /* the longest and highest that it covers */
-    } size[] = {{6.5, 2.4}, {9.5, 3.0}};
+        double long_m, high_m; /* the longest and highest that it covers */
+    } size[] = {{6.5, 2.4}, {10.8, 3.3}};
     Cast                *cast = h->cast;
     const ScenarioGroup *g = &cast->scenario->group[group];
     if (!g->over) return;

@@ -101,9 +101,9 @@ typedef struct CastEntity {
 
 /* Where an entity hides. */
 typedef struct CastHidden {
-    double x_m, y_m, heading_rad;  /* ENU at the place */
-    double planned, judged;        /* shares hidden from the observer of the scenario; judged: or estimated */
-    int    entity, fit;            /* its number in Cast.entity; candidates that were of the kind */
+    double x_m, y_m, heading_rad; /* ENU at the place */
+    double planned, judged;       /* shares hidden from the observer of the scenario; judged: or estimated */
+    int    entity, fit;           /* its number in Cast.entity; candidates that were of the kind */
 } CastHidden;
 
 /* One shot of one munition. */

@@ -1,6 +1,6 @@
 /* entities/exercise/hide.c: a place to hide: candidates about a place, by what stands around them and how much it
  * hides. */
-#include "entities/exercise/hide_private.h"
+#include "entities/exercise/hide.h"
 
 enum { candidates = 30000, kept_most = 400, judged_most = 60 };
 
@@ -135,7 +135,7 @@ static void place_beside(double p_m[2], const HideWish *wish, const HideSight *s
     const double   level = fmax(hypot(sight->d_enu[0], sight->d_enu[1]), 1e-9);
     const double   away[2] = {-sight->d_enu[0] / level, -sight->d_enu[1] / level};
     double         deep_m = 0, wide_m = 0, middle[2];
-    const double *low = b->shape.model->box_low, *high = b->shape.model->box_high;
+    const double  *low = b->shape.model->box_low, *high = b->shape.model->box_high;
     for (int k = 0; k < 2; k++)
         middle[k] = b->p_enu[k] + 0.5 * (low[0] + high[0]) * b->nose[k] +
                     0.5 * (low[1] + high[1]) * (k ? -b->nose[0] : b->nose[1]);
@@ -154,11 +154,11 @@ static bool meets_box(const HideBox *box, const HidePose *pose, const Model *mod
     /* corners of each in the axes of the other, with half a metre */
     static const double room_m = 0.5;
     for (int k = 0; k < 9; k++) {
-        const double along = model->box_low[0] + 0.5 * (k % 3) * (model->box_high[0] - model->box_low[0]);
-        const double right = 0.5 * (k / 3 - 1) * model->width_m;
-        const double x = pose->p_enu[0] + along * pose->nose[0] + right * pose->nose[1] - box->p_enu[0];
-        const double y = pose->p_enu[1] + along * pose->nose[1] - right * pose->nose[0] - box->p_enu[1];
-        const double f = x * box->nose[0] + y * box->nose[1], r = x * box->nose[1] - y * box->nose[0];
+        const double  along = model->box_low[0] + 0.5 * (k % 3) * (model->box_high[0] - model->box_low[0]);
+        const double  right = 0.5 * (k / 3 - 1) * model->width_m;
+        const double  x = pose->p_enu[0] + along * pose->nose[0] + right * pose->nose[1] - box->p_enu[0];
+        const double  y = pose->p_enu[1] + along * pose->nose[1] - right * pose->nose[0] - box->p_enu[1];
+        const double  f = x * box->nose[0] + y * box->nose[1], r = x * box->nose[1] - y * box->nose[0];
         const double *low = box->shape.model->box_low, *high = box->shape.model->box_high;
         if (f > low[0] - room_m && f < high[0] + room_m && r > low[1] - room_m && r < high[1] + room_m) return true;
     }

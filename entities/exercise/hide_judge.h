@@ -1,4 +1,5 @@
-/* entities/exercise/hide_judge.h: who can tell what plants hide: a tracer of a room above, which entities do not know. */
+/* entities/exercise/hide_judge.h: who can tell what plants hide: a tracer of a room above, which entities do not know.
+ */
 #ifndef ENTITIES_EXERCISE_HIDE_JUDGE_H
 #define ENTITIES_EXERCISE_HIDE_JUDGE_H
 

@@ -1,5 +1,5 @@
 /* entities/exercise/hide_sight.c: how much of an entity crowns, ground and a box hide, estimated. */
-#include "entities/exercise/hide_private.h"
+#include "entities/exercise/hide.h"
 
 #include <stdlib.h>
 
@@ -8,24 +8,93 @@
 /* The crown of the prototypes of each kind in eight slices of the height: radius of the cylinder that holds nine tenths
  * of the slice's leaves and branches, over the height; and what they hide along a metre of a plant 1 m high, 1/m: mean
  * projected area over volume (half of a leaf's side, a quarter of a branch's skin: Cauchy). From the prototypes
- * (render/trace/plants; tests/render/test_hide_crowns.c). */
+ * (render/trace/plants; tests/sensor/test_hide_crowns.c). */
 enum { slices = 8 };
 typedef struct CrownSlice {
     float radius, per_m;
 } CrownSlice;
 static const CrownSlice crown[PLANT_STANDING][slices] = {
-    [PLANT_PINE] = {{0.013f, 58.59f}, {0.013f, 32.06f}, {0.011f, 61.88f}, {0.151f, 2.35f}, {0.181f, 2.17f}, {0.173f, 3.03f}, {0.149f, 3.71f}, {0.095f, 9.74f}},
-    [PLANT_ALDER] = {{0.012f, 65.56f}, {0.112f, 1.37f}, {0.162f, 3.97f}, {0.194f, 3.19f}, {0.195f, 3.78f}, {0.188f, 3.72f}, {0.154f, 6.62f}, {0.084f, 23.82f}},
-    [PLANT_BIRCH] = {{0.009f, 79.68f}, {0.113f, 0.35f}, {0.162f, 3.22f}, {0.201f, 2.87f}, {0.243f, 2.01f}, {0.242f, 2.35f}, {0.225f, 3.26f}, {0.144f, 7.43f}},
-    [PLANT_ENGLISH_OAK] = {{0.017f, 46.53f}, {0.203f, 3.78f}, {0.256f, 2.82f}, {0.285f, 2.03f}, {0.299f, 2.38f}, {0.289f, 3.78f}, {0.294f, 1.38f}, {0.298f, 0.09f}},
-    [PLANT_SESSILE_OAK] = {{0.015f, 36.38f}, {0.077f, 2.08f}, {0.173f, 4.46f}, {0.218f, 3.41f}, {0.235f, 2.77f}, {0.246f, 4.38f}, {0.237f, 3.64f}, {0.235f, 0.50f}},
-    [PLANT_RED_OAK] = {{0.015f, 52.82f}, {0.116f, 1.07f}, {0.163f, 4.53f}, {0.206f, 3.36f}, {0.242f, 2.46f}, {0.255f, 3.74f}, {0.240f, 3.59f}, {0.235f, 0.51f}},
-    [PLANT_WHITE_OAK] = {{0.174f, 0.83f}, {0.249f, 2.71f}, {0.274f, 2.41f}, {0.318f, 1.65f}, {0.334f, 2.00f}, {0.301f, 3.35f}, {0.314f, 1.95f}, {0.408f, 0.11f}},
-    [PLANT_BUSH] = {{0.525f, 0.30f}, {0.504f, 2.21f}, {0.528f, 1.41f}, {0.484f, 1.53f}, {0.446f, 2.13f}, {0.429f, 1.84f}, {0.422f, 1.86f}, {0.319f, 0.43f}},
-    [PLANT_HEDGE] = {{0.470f, 0.61f}, {0.469f, 1.87f}, {0.466f, 1.24f}, {0.445f, 1.75f}, {0.416f, 1.65f}, {0.414f, 1.96f}, {0.378f, 1.88f}, {0.289f, 0.42f}},
+    [PLANT_PINE] = {{0.013f, 58.59f},
+                    {0.013f, 32.06f},
+                    {0.011f, 61.88f},
+                    {0.151f, 2.35f},
+                    {0.181f, 2.17f},
+                    {0.173f, 3.03f},
+                    {0.149f, 3.71f},
+                    {0.095f, 9.74f}},
+    [PLANT_ALDER] = {{0.012f, 65.56f},
+                     {0.112f, 1.37f},
+                     {0.162f, 3.97f},
+                     {0.194f, 3.19f},
+                     {0.195f, 3.78f},
+                     {0.188f, 3.72f},
+                     {0.154f, 6.62f},
+                     {0.084f, 23.82f}},
+    [PLANT_BIRCH] = {{0.009f, 79.68f},
+                     {0.113f, 0.35f},
+                     {0.162f, 3.22f},
+                     {0.201f, 2.87f},
+                     {0.243f, 2.01f},
+                     {0.242f, 2.35f},
+                     {0.225f, 3.26f},
+                     {0.144f, 7.43f}},
+    [PLANT_ENGLISH_OAK] = {{0.017f, 46.53f},
+                           {0.203f, 3.78f},
+                           {0.256f, 2.82f},
+                           {0.285f, 2.03f},
+                           {0.299f, 2.38f},
+                           {0.289f, 3.78f},
+                           {0.294f, 1.38f},
+                           {0.298f, 0.09f}},
+    [PLANT_SESSILE_OAK] = {{0.015f, 36.38f},
+                           {0.077f, 2.08f},
+                           {0.173f, 4.46f},
+                           {0.218f, 3.41f},
+                           {0.235f, 2.77f},
+                           {0.246f, 4.38f},
+                           {0.237f, 3.64f},
+                           {0.235f, 0.50f}},
+    [PLANT_RED_OAK] = {{0.015f, 52.82f},
+                       {0.116f, 1.07f},
+                       {0.163f, 4.53f},
+                       {0.206f, 3.36f},
+                       {0.242f, 2.46f},
+                       {0.255f, 3.74f},
+                       {0.240f, 3.59f},
+                       {0.235f, 0.51f}},
+    [PLANT_WHITE_OAK] = {{0.174f, 0.83f},
+                         {0.249f, 2.71f},
+                         {0.274f, 2.41f},
+                         {0.318f, 1.65f},
+                         {0.334f, 2.00f},
+                         {0.301f, 3.35f},
+                         {0.314f, 1.95f},
+                         {0.408f, 0.11f}},
+    [PLANT_BUSH] = {{0.525f, 0.30f},
+                    {0.504f, 2.21f},
+                    {0.528f, 1.41f},
+                    {0.484f, 1.53f},
+                    {0.446f, 2.13f},
+                    {0.429f, 1.84f},
+                    {0.422f, 1.86f},
+                    {0.319f, 0.43f}},
+    [PLANT_HEDGE] = {{0.470f, 0.61f},
+                     {0.469f, 1.87f},
+                     {0.466f, 1.24f},
+                     {0.445f, 1.75f},
+                     {0.416f, 1.65f},
+                     {0.414f, 1.96f},
+                     {0.378f, 1.88f},
+                     {0.289f, 0.42f}},
 };
 
-static const double clumped = 0.75; /* share of the density that leaves in twigs have of leaves at random: from pictures */
+void hide_crown(double *radius_m, double *per_m, PlantKind kind, int slice)
+{
+    *radius_m = (double)crown[kind][slice].radius, *per_m = (double)crown[kind][slice].per_m;
+}
+
+static const double clumped =
+    0.75; /* share of the density that leaves in twigs have of leaves at random: from pictures */
 
 /* Length of the level circle of a radius that a ray o + t d, t >= 0, passes between two heights. */
 static double within(const double o[3], const double d[3], double radius_m, double low_m, double high_m)
@@ -60,8 +129,8 @@ static double depth_of(const Plant *plant, const double foot[3], const double d[
         const double axis_m = height_m * (k + 0.5) / slices, tilt = plant_most_tilt_rad / 127;
         const double o[3] = {-foot[0] - axis_m * tilt * plant->lean[0], -foot[1] - axis_m * tilt * plant->lean[1],
                              -foot[2]};
-        const double m = within(o, d, (double)s->radius * height_m * width, height_m * k / slices,
-                                height_m * (k + 1) / slices);
+        const double m =
+            within(o, d, (double)s->radius * height_m * width, height_m * k / slices, height_m * (k + 1) / slices);
         depth += m * (double)s->per_m / (height_m * width);
     }
     return clumped * depth;
@@ -72,10 +141,8 @@ static double depth_of(const Plant *plant, const double foot[3], const double d[
 Status hide_ground_open(HideGround *out, const Landscape *landscape, uint64_t seed, const double about_m[2],
                         double half_m, const HideJudge *judge)
 {
-    const WoodsConfig config = {.seed = seed,
-                                .centre_m = {about_m[0], about_m[1]},
-                                .half_width_m = half_m,
-                                .most_trees = woods_most_trees};
+    const WoodsConfig config = {
+        .seed = seed, .centre_m = {about_m[0], about_m[1]}, .half_width_m = half_m, .most_trees = woods_most_trees};
     *out = (HideGround){.landscape = landscape};
     Status status = woods_create(&out->woods, landscape, &config, NULL);
     if (status != STATUS_OK) out->landscape = NULL;
@@ -94,9 +161,9 @@ void hide_ground_close(HideGround *ground)
 HideSight hide_sight(const Scenario *scenario)
 {
     const double bearing_rad = scenario->seen.bearing_deg * rad_per_deg;
-    HideSight    s = {{scenario->seen.range_m * sin(bearing_rad), scenario->seen.range_m * cos(bearing_rad),
-                       scenario->seen.height_m},
-                      0};
+    HideSight    s = {
+           {scenario->seen.range_m * sin(bearing_rad), scenario->seen.range_m * cos(bearing_rad), scenario->seen.height_m},
+           0};
     s.range_m = v3_length(s.d_enu);
     v3_normalize(s.d_enu, s.d_enu);
     return s;
@@ -122,13 +189,13 @@ static Status triangles_of(double (**out)[3][3], const Model *model)
     return status;
 }
 
-/* The surface nearest to the observer in each cell of a grid across the line of sight, from points drawn evenly over the
- * triangles that face it: what other parts of the model hide is left out. */
+/* The surface nearest to the observer in each cell of a grid across the line of sight, from points drawn evenly over
+ * the triangles that face it: what other parts of the model hide is left out. */
 typedef struct Silhouette {
     double u[3], v[3], d[3], cell_m;
     int    side;
-    double (*p)[3];    /* [side * side] */
-    double *near_m;    /* [side * side]; -INFINITY: nothing */
+    double (*p)[3]; /* [side * side] */
+    double *near_m; /* [side * side]; -INFINITY: nothing */
 } Silhouette;
 
 static void draw_triangle(Silhouette *s, const double corner[3][3], double area_m2, uint64_t number)
@@ -246,8 +313,8 @@ static bool ground_hides(const Landscape *landscape, const double p_enu[3], cons
 {
     static const double first_m = 6, grows = 1.15, highest_m = 150;
     for (double t = first_m; t < range_m && t * d_enu[2] < highest_m; t *= grows) {
-        const double z_m = elevation_height(&landscape->elevation, p_enu[0] + t * d_enu[0], p_enu[1] + t * d_enu[1],
-                                            NULL);
+        const double z_m =
+            elevation_height(&landscape->elevation, p_enu[0] + t * d_enu[0], p_enu[1] + t * d_enu[1], NULL);
         if (p_enu[2] + t * d_enu[2] < z_m) return true;
     }
     return false;
@@ -270,7 +337,8 @@ static int plants_along(const Plant *list[plants_most], const HideGround *ground
     double       low[2], high[2];
     for (int k = 0; k < 2; k++) {
         const double a = pose->p_enu[k] - w->origin_enu[k], b = a + u[k] * long_m;
-        low[k] = floor((fmin(a, b) - beside_m) / woods_square_m), high[k] = floor((fmax(a, b) + beside_m) / woods_square_m);
+        low[k] = floor((fmin(a, b) - beside_m) / woods_square_m),
+        high[k] = floor((fmax(a, b) + beside_m) / woods_square_m);
     }
     for (int j = (int)clamp(low[1], 0, w->ny); j <= (int)clamp(high[1], -1, w->ny - 1); j++)
         for (int i = (int)clamp(low[0], 0, w->nx); i <= (int)clamp(high[0], -1, w->nx - 1); i++)
@@ -318,11 +386,11 @@ double hide_occlusion(const HideGround *ground, const HidePose *pose, const Hide
 bool hide_judged(double *occlusion, const HideGround *ground, const HidePose *pose, const HidePoints *points,
                  const HideSight *sight, const HideBox *box)
 {
-    double               o[3][hide_points_most], d[3][hide_points_most], eye_enu[3];
-    const double *const  o_enu[3] = {o[0], o[1], o[2]}, *const d_enu[3] = {d[0], d[1], d[2]};
-    uint8_t              dark[hide_points_most] = {0};
-    int                  hidden = 0;
-    const HideJudge     *judge = ground->judge;
+    double              o[3][hide_points_most], d[3][hide_points_most], eye_enu[3];
+    const double *const o_enu[3] = {o[0], o[1], o[2]}, *const d_enu[3] = {d[0], d[1], d[2]};
+    uint8_t          dark[hide_points_most] = {0};
+    int              hidden = 0;
+    const HideJudge *judge = ground->judge;
     if (!judge || points->count == 0) return false;
     v3_add_scaled(eye_enu, pose->p_enu, sight->range_m, sight->d_enu);
     for (int n = 0; n < points->count; n++) {

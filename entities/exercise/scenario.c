@@ -76,6 +76,21 @@ static const SettingTable table = {
 
 static Scenario default_scenario(void) { return (Scenario){SCENARIO_ROWS(SETTING_DEFAULT)}; }
 
+/* A number as short as it reads back equal. */
+static void shortest(char out[32], double value)
+{
+    int digits = 6;
+    do snprintf(out, 32, "%.*g", digits, value);
+    while (strtod(out, NULL) != value && digits++ < 17);
+}
+
+void scenario_place_text(char out[scenario_place_size], const Scenario *s)
+{
+    char lat[32], lon[32], height[32];
+    shortest(lat, s->place.lat_deg), shortest(lon, s->place.lon_deg), shortest(height, s->place.height_m);
+    snprintf(out, scenario_place_size, "%.24s,%.24s,%.24s", lat, lon, height);
+}
+
 const char *scenario_hide_name(enum ScenarioHide hide)
 {
     static const char *const names[] = {"none", "open", "tree-line", "wood", "hedge", "hollow", "beside"};
@@ -225,8 +240,8 @@ static bool name_fits(const Scenario *s, const int *ids, int line, const char *l
     text_escape(shown, sizeof shown, name, strlen(name));
     const ScenarioGroup *first = s->group_count ? s->group : NULL;
     log_error("scenario: %s:%d: %s: %s: there is no '%s'; an entity is called by name and id%s%.*s%s", s->path, line,
-              list, key, shown, first ? ", for example '" : "", first ? scenario_name_size : 0, first ? first->name : "",
-              first ? " N'" : "");
+              list, key, shown, first ? ", for example '" : "", first ? scenario_name_size : 0,
+              first ? first->name : "", first ? " N'" : "");
     return false;
 }
 

@@ -230,6 +230,9 @@ bool scenario_find(int *group, int *member, const Scenario *scenario, const int 
 bool scenario_ids(int *ids, const Scenario *scenario);
 
 const char *scenario_hide_name(enum ScenarioHide hide);
+/* The place as the setting terrain.place of a node has it, which reads back equal: 50.1,8.6,120. */
+enum { scenario_place_size = 80 };
+void scenario_place_text(char out[scenario_place_size], const Scenario *scenario);
 /* `1.1.222.1.1.1.0`; true when all seven are there. */
 bool scenario_type_parse(DisEntityType *out, const char *text);
 

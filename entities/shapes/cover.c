@@ -1,10 +1,10 @@
 /* entities/shapes/cover.c: what hides vehicles: a camouflage net, a wall.
  *
- * Net: a lightweight camouflage screen over supports, garnished with scraps of cloth that leave holes between them (class of
- * the ULCANS, NSN 1080-01-457-2956: a hexagon of 27 ft; sizes and shape here an estimate): level over the middle, 3.0 m
- * high, then falling to the ground on all sides, 9.0 m long and 5.8 m wide. Scraps stand in cells of 0.5 m along the
- * surface, each 0.42 m square: 0.70 of the surface is covered. Wall: of a yard, brick, 12 m long, 2.0 m high, 0.3 m
- * thick, under a coping; estimate. */
+ * Net: a lightweight camouflage screen over supports, garnished with scraps of cloth that leave holes between them
+ * (class of the ULCANS, NSN 1080-01-457-2956: a hexagon of 27 ft; sizes and shape here an estimate): level over the
+ * middle, 3.0 m high, then falling to the ground on all sides, 9.0 m long and 5.8 m wide. Scraps stand in cells of 0.5
+ * m along the surface, each 0.42 m square: 0.70 of the surface is covered. Wall: of a yard, brick, 12 m long, 2.0 m
+ * high, 0.3 m thick, under a coping; estimate. */
 #include "entities/shapes/parametric.h"
 #include "entities/shapes/parts_private.h"
 
@@ -45,7 +45,7 @@ static void add_scrap(MeshBuilder *b, double x, double y, double dx, double dy, 
         m[3 * k + 1] = flip * (c * v[k] - s * u[k]);
         m[3 * k + 2] = flip * n[k];
     }
-    Place place = {{x, -y, -fmax(z, 0.03)}, {0}};
+    Place place = {{x, -y, -fmax(z, 0.22)}, {0}};
     memcpy(place.m, m, sizeof m);
     mesh_box(b, place, -0.5 * long_m, -0.5 * wide_m, -0.5 * cloth_m, 0.5 * long_m, 0.5 * wide_m, 0.5 * cloth_m);
 }

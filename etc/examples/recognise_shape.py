@@ -18,7 +18,7 @@ import recognise
 from recognise_contrast import Contrast, GUARD, noise_of
 
 FEATURES = ('strength', 'size', 'elongation', 'contrast', 'edges', 'contrast_2', 'edges_2')
-# mean and standard deviation of each feature, by class: over the frames of tests/scores/learn.yaml, by tests/scores/learn
+# mean and standard deviation of each feature, by class: over a sweep of vehicles in the open, by tests/scores/learn
 CLASSES = {
     'clutter': ((-0.71, 0.20), (0.71, 0.52), (0.49, 0.36), (0.77, 0.39), (0.32, 0.35), (0.66, 0.53), (0.29, 0.40)),
     'tank': ((0.48, 0.59), (1.45, 0.65), (0.67, 0.29), (2.17, 0.80), (1.76, 0.44), (3.35, 1.00), (2.67, 0.71)),

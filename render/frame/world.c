@@ -59,10 +59,10 @@ Status world_need_patches(const World *world, const Snapshot *snapshot)
 /* The prototypes, and what their light is kept by. */
 static Status grow_plants(World *world, CacheKey *key, const ForestConfig *config, const char *isa, Pool *pool)
 {
-    const uint64_t        seed = plants_seed;
-    const int64_t         embree = tracer_embree(world->tracer);
-    const uint8_t         light[2] = {config->leaves, config->fine}; /* bare trees let more through to their bark */
-    const Status          status = plants_create(&world->plants, seed, pool);
+    const uint64_t seed = plants_seed;
+    const int64_t  embree = tracer_embree(world->tracer);
+    const uint8_t  light[2] = {config->leaves, config->fine}; /* bare trees let more through to their bark */
+    const Status   status = plants_create(&world->plants, seed, pool);
     if (status != STATUS_OK) return status;
     *key = cache_key("light of prototypes");
     cache_key_add(key, &seed, sizeof seed); /* by which they grow, in this program */

@@ -397,12 +397,12 @@ static Status open_outputs(Run *run, const Options *o, double epoch_unix_s)
 
 int exercise_command(int argc, char **argv)
 {
-    Options   o = {.speed = 1, .udp = dis_udp_default_config()};
-    Scenario  scenario = {0};
-    Cast     *cast = NULL;
-    Run       run = {0};
+    Options     o = {.speed = 1, .udp = dis_udp_default_config()};
+    Scenario    scenario = {0};
+    Cast       *cast = NULL;
+    Run         run = {0};
     PlantJudge *judge = NULL;
-    const int stop = parse(&o, argc, argv);
+    const int   stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
 
     Status status = read_scenario(&scenario, &o);

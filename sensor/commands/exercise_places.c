@@ -6,22 +6,6 @@
 #include "sensor/commands/overwrite.h"
 
 #include <errno.h>
-#include <stdlib.h>
-
-/* A number as short as it reads back equal. */
-static void shortest(char out[32], double value)
-{
-    int digits = 6;
-    do snprintf(out, 32, "%.*g", digits, value);
-    while (strtod(out, NULL) != value && digits++ < 17);
-}
-
-void exercise_place_text(char out[exercise_place_size], const Scenario *s)
-{
-    char lat[32], lon[32], height[32];
-    shortest(lat, s->place.lat_deg), shortest(lon, s->place.lon_deg), shortest(height, s->place.height_m);
-    snprintf(out, exercise_place_size, "%.24s,%.24s,%.24s", lat, lon, height);
-}
 
 static void write_rows(FILE *file, const Cast *cast)
 {
@@ -51,13 +35,13 @@ Status exercise_places(const Cast *cast, const char *path, bool overwrite)
 {
     static const double off = 0.1;
     const Scenario     *s = cast->scenario;
-    char                place[exercise_place_size];
+    char                place[scenario_place_size];
     int                 far = 0;
     if (!s->ground.invented) {
         if (path) log_error("exercise: --places: no entity hides: `hide` needs ground.invented: true");
         return path ? STATUS_BAD_VALUE : STATUS_OK;
     }
-    exercise_place_text(place, s);
+    scenario_place_text(place, s);
     for (int n = 0; n < cast->hidden_count; n++)
         far += !(fabs(cast->hidden[n].planned - cast->hidden[n].judged) <= off);
     log_print("ground: replay it with --set terrain.place=%s --set seed=%lld", place, s->ground.seed);

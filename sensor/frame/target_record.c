@@ -225,6 +225,7 @@ static const struct Rule {
     {3, any, any, {200, 201}, {any, any}, ANIMAL},
     {3, any, any, {any, any}, {any, any}, PERSON},
     {5, 1, any, {5, 5}, {any, any}, BRIDGE},
+    {5, 1, any, {90, 91}, {any, any}, OTHER}, /* nets, walls (etc/catalog.csv) */
     {5, any, any, {any, any}, {any, any}, BUILDING},
     {6, any, any, {any, any}, {any, any}, SUPPLIES},
     {8, 1, any, {5, 5}, {any, any}, DECOY},

@@ -6,9 +6,9 @@
 
 /* Shares of the picture's width and height to the right of its centre and below it. */
 typedef struct AimOffset {
-    bool   drawn;    /* by the seed, evenly within +- share */
-    bool   degrees;  /* at is in degrees, of azimuth to the right and of elevation down */
-    double at[2];    /* drawn: half of the shares of width and height that are drawn over */
+    bool   drawn;   /* by the seed, evenly within +- share */
+    bool   degrees; /* at is in degrees, of azimuth to the right and of elevation down */
+    double at[2];   /* drawn: half of the shares of width and height that are drawn over */
 } AimOffset;
 
 /* none; drawn (over four fifths of the width and of the height); drawn W,H: over these shares, 0 .. 1; X,Y: shares from

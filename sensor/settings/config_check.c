@@ -309,9 +309,10 @@ static bool scene_good(const Config *config)
     AimOffset offset;
     bool      good = true;
     if (!aim_offset_parse(&offset, config->sensor.aim_offset)) {
-        log_error("config: %ssensor.aim_offset: '%s' is not none, drawn, drawn W,H with shares in 0 .. 1, X,Y with shares "
-                  "in -0.5 .. 0.5, or X,Y deg with -60 .. 60",
-                  config_where(config, "sensor.aim_offset"), config->sensor.aim_offset);
+        log_error(
+            "config: %ssensor.aim_offset: '%s' is not none, drawn, drawn W,H with shares in 0 .. 1, X,Y with shares "
+            "in -0.5 .. 0.5, or X,Y deg with -60 .. 60",
+            config_where(config, "sensor.aim_offset"), config->sensor.aim_offset);
         good = false;
     }
     if (config->heat.facets % 2 == 0) {

@@ -8,7 +8,8 @@ bool landscape_place_parse(Geodetic *out, const char *text)
     for (int k = 0; k < 3; k++) {
         char word[40];
         text += strspn(text, " ");
-        const size_t length = strcspn(text, ",");
+        size_t length = 0;
+        while (text[length] && text[length] != ',') length++;
         if (length >= sizeof word || (text[length] == ',') != (k < 2)) return false;
         memcpy(word, text, length);
         word[length] = 0;

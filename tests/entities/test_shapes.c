@@ -158,6 +158,9 @@ static const Published published[] = {
     {{4, 1, 0, 1, 0, 0, 0}, NULL, 0, 0, 0, tight, "environmental"},
     {{5, 1, 225, 1, 1, 0, 0}, "building", 0, 0, 0, tight, "building"},
     {{5, 1, 225, 5, 1, 0, 0}, "bridge", 30, 8, 0, tight, "bridge"},
+    {{5, 1, 225, 90, 1, 0, 0}, "net", 9, 5.8, 3, tight, "a net over a jeep"},
+    {{5, 1, 0, 90, 2, 0, 0}, "net", 12, 6.6, 3.6, tight, "a net over a tank"},
+    {{5, 1, 0, 91, 0, 0, 0}, "wall", 12, 0.4, 2, tight, "wall"},
     {{6, 1, 225, 1, 0, 0, 0}, "crates", 1.22, 1.02, 1.20, tight, "loaded pallet: MIL-P-15011 (48 x 40 in)"},
     {{7, 1, 225, 1, 1, 0, 0}, NULL, 0, 0, 0, tight, "radio"},
     {{8, 2, 225, 1, 1, 0, 0}, NULL, 0, 0, 0, tight, "chaff"},
@@ -358,6 +361,8 @@ static void outlines_fill_their_boxes_as_they_should(void **state)
         {"shell", {0.7, 0.82}, {0.6, 0.95}, {0.6, 0.95}},
         {"missile_cruise", {0.05, 0.3}, {0.35, 0.7}, {0.15, 0.4}},
         {"tent", {0.7, 0.95}, {0.7, 0.98}, {0.98, 1}},
+        {"net", {0.5, 0.8}, {0.55, 0.85}, {0.6, 0.8}}, /* above: its share that is covered */
+        {"wall", {0.7, 0.85}, {0.98, 1}, {0.98, 1}},
         {"crates", {0.9, 1}, {0.85, 1}, {0.95, 1}},
         {"animal", {0.3, 0.8}, {0.25, 0.6}, {0.4, 0.85}},
         {"satellite", {0.1, 0.35}, {0.7, 1}, {0.7, 1}},

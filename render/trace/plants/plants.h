@@ -80,8 +80,8 @@ typedef struct Plants {
 
 /* Grows all kinds: a pure function of the seed, plants_seed in every world. 0.3 s of one processor. */
 static const uint64_t plants_seed = 1995;
-Status plants_create(Plants **out, uint64_t seed, Pool *pool);
-void   plants_destroy(Plants *plants);
+Status                plants_create(Plants **out, uint64_t seed, Pool *pool);
+void                  plants_destroy(Plants *plants);
 
 /* Whether a point of a card is within its outline; boundary counts as within. */
 bool plants_within_outline(const LeafOutline *outline, float u, float v);

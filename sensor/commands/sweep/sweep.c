@@ -45,8 +45,9 @@ static Status name_variant(char name[sweep_name_size], const Sweep *sweep, int n
 static void write_again(FILE *file, const Options *o, const char *exercise)
 {
     char escaped[1024];
-    fprintf(file, "# A variant of a sweep: what it sets is not commented out.\n"
-                  "# To reproduce: pitviper replay %s%s%s --config THIS",
+    fprintf(file,
+            "# A variant of a sweep: what it sets is not commented out.\n"
+            "# To reproduce: pitviper replay %s%s%s --config THIS",
             *exercise ? "exercises/" : "LOG", exercise, *exercise ? ".pcapng" : "");
     for (int i = 0; i < o->given_count; i++) {
         const OptionGiven *given = &o->given[i];
@@ -77,7 +78,8 @@ static Status try_variant(Variant *variant, const SweepRun *s)
     if (!run) return STATUS_NO_MEMORY;
     run->options = *s->options;
     Status status = sweep_config(&run->options.config, &s->sweep, &s->options->config, variant->number);
-    if (status == STATUS_OK) status = sweep_exercise(variant->exercise, &run->options.config, &s->sweep, variant->number);
+    if (status == STATUS_OK)
+        status = sweep_exercise(variant->exercise, &run->options.config, &s->sweep, variant->number);
     if (status == STATUS_OK) status = config_check(&run->options.config);
     if (status == STATUS_OK)
         status = settings_text_of(&text, &octets, variant->settings_sha256, s->options, &run->options.config,

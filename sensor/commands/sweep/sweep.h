@@ -66,8 +66,8 @@ extern const FieldTable variant_fields; /* a line of manifest.jsonl */
  *
  * Each of the exercises that they make is recorded once, OUT/exercises/eXXXXXXXXXX.pcapng, with the table of what hides
  * in it. Where the scenario has ground.invented, its seed, relief and spacing are those of the variant, and the
- * variant's terrain.place is that of the scenario. Names of files are relative to the sweep's. Every value is validated before
- * the first run; an error is one logged line with file, line, key, value and range. */
+ * variant's terrain.place is that of the scenario. Names of files are relative to the sweep's. Every value is validated
+ * before the first run; an error is one logged line with file, line, key, value and range. */
 enum { sweep_variants_max = 10000, sweep_axes_max = 64, sweep_value_size = 1024 };
 
 typedef enum SweepMode { SWEEP_GRID, SWEEP_ZIP, SWEEP_RANDOM } SweepMode;
@@ -85,7 +85,7 @@ typedef struct SweepAxis {
 
 typedef struct Sweep {
     const char *scenario; /* borrowed: what is replayed, where that is no recording; NULL: a recording */
-    const char *path; /* borrowed: paths of its values are relative to its folder */
+    const char *path;     /* borrowed: paths of its values are relative to its folder */
     SweepMode   mode;
     int         count, axis_count; /* count: of variants */
     int         count_line;

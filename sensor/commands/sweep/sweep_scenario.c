@@ -3,7 +3,6 @@
 
 #include "entities/exercise/scenario.h"
 #include "pitviper_output.h"
-#include "sensor/commands/exercise_places_private.h"
 #include "sensor/publish/files/frame_files.h"
 
 #include <errno.h>
@@ -38,9 +37,10 @@ Status sweep_scenario_try(const char *scenario, const char *key, const char *val
 {
     Scenario tried;
     if (!scenario) {
-        log_error("sweep: %s: %s: is of a scenario, and a recording is replayed: `pitviper replay SCENARIO.yaml --sweep "
-                  "FILE`",
-                  source, key);
+        log_error(
+            "sweep: %s: %s: is of a scenario, and a recording is replayed: `pitviper replay SCENARIO.yaml --sweep "
+            "FILE`",
+            source, key);
         return STATUS_BAD_VALUE;
     }
     Status status = scenario_read(&tried, scenario);
@@ -96,8 +96,8 @@ Status sweep_exercise(char name[sweep_name_size], Config *config, const Sweep *s
     if (status == STATUS_OK && scenario.ground.invented) {
         if (*config->terrain.place)
             log_error("sweep: terrain.place is that of the scenario, whose ground is invented: leave it out");
-        char place[exercise_place_size];
-        exercise_place_text(place, &scenario);
+        char place[scenario_place_size];
+        scenario_place_text(place, &scenario);
         if (*config->terrain.place) status = STATUS_BAD_VALUE;
         else status = config_set(config, "terrain.place", place, "the scenario");
     }
@@ -139,8 +139,7 @@ static int record(const char *const argv[], const char *said)
 Status sweep_exercise_need(char *path, size_t size, const char *out, const char *name, const Config *config,
                            const Sweep *sweep, int variant)
 {
-    char        folder[sweep_path_size], part[sweep_path_size + 64], places[sweep_path_size + 64],
-        said[sweep_path_size + 64];
+    char folder[sweep_path_size], part[sweep_path_size + 64], places[sweep_path_size + 64], said[sweep_path_size + 64];
     const char *argv[2 * (sweep_axes_max + 3) + 16];
     Scenario    scenario = {0};
     Settings   *set = calloc(1, sizeof *set);
@@ -160,7 +159,7 @@ Status sweep_exercise_need(char *path, size_t size, const char *out, const char 
         for (int i = 0; i < set->count; i++) argv[n++] = "--set", argv[n++] = set->text[i];
         argv[n] = NULL;
         if (record(argv, said) != 0) status = STATUS_BAD_VALUE;
-        else if (rename(part, path) != 0) {
+        else if (output_rename(part, path) != 0) {
             log_error("sweep: cannot write %s: %s", path, output_reason(errno));
             status = STATUS_IO;
         }

@@ -45,11 +45,11 @@ void aim_error_turn(double r_enu_from_cam[9], const double tangent[2])
     double n[3] = {tangent[0], tangent[1], 1}, turn[9], out[9];
     if (tangent[0] == 0 && tangent[1] == 0) return;
     v3_normalize(n, n);
-    /* the shortest turn from (0, 0, 1) to n (Rodrigues): I + [w] + [w]^2 / (1 + n_z), w = (-n_y, n_x, 0); the new axes in
-     * the old ones are its transpose */
+    /* the shortest turn from (0, 0, 1) to n (Rodrigues): I + [w] + [w]^2 / (1 + n_z), w = (-n_y, n_x, 0); the new axes
+     * in the old ones are its transpose */
     const double k = 1 / (1 + n[2]);
-    const double r[9] = {1 - k * n[0] * n[0], -k * n[0] * n[1],    n[0], -k * n[0] * n[1], 1 - k * n[1] * n[1],
-                         n[1],                -n[0],               -n[1], n[2]};
+    const double r[9] = {
+        1 - k * n[0] * n[0], -k * n[0] * n[1], n[0], -k * n[0] * n[1], 1 - k * n[1] * n[1], n[1], -n[0], -n[1], n[2]};
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) turn[3 * i + j] = r[3 * j + i];
     m3_mul(out, r_enu_from_cam, turn);

@@ -1,4 +1,4 @@
-/* entities/exercise/hide_private.h: where entities hide: among the plants of an invented ground, which the node that
+/* entities/exercise/hide.h: where entities hide: among the plants of an invented ground, which the node that
  * shows them makes alike (terrain/ground/placed.h).
  *
  * Candidates about a place are drawn by the seed. Of those where the ground bears a vehicle, no plant has to be cleared
@@ -6,8 +6,8 @@
  * occlusion: crowns as cylinders of a density, a slice of the height each (hide_sight.c). Of the nearest some are
  * judged by rays against the plants themselves, where the caller has a tracer (HideJudge), and the nearest of these is
  * taken. */
-#ifndef ENTITIES_EXERCISE_HIDE_PRIVATE_H
-#define ENTITIES_EXERCISE_HIDE_PRIVATE_H
+#ifndef ENTITIES_EXERCISE_HIDE_H
+#define ENTITIES_EXERCISE_HIDE_H
 
 #include "entities/exercise/hide_judge.h"
 #include "entities/exercise/scenario.h"
@@ -68,6 +68,10 @@ double hide_occlusion(const HideGround *ground, const HidePose *pose, const Hide
 bool hide_judged(double *occlusion, const HideGround *ground, const HidePose *pose, const HidePoints *points,
                  const HideSight *sight, const HideBox *box);
 
+/* What hides of one slice of eight of a plant's height, counted from the foot, of a plant 1 m high: the radius of its
+ * cylinder, m, and the density that its leaves and branches have to a ray, 1/m. */
+void hide_crown(double *radius_m, double *per_m, PlantKind kind, int slice);
+
 /* What is asked of a place, and what was found. */
 typedef struct HideWish {
     enum ScenarioHide kind;
@@ -75,8 +79,8 @@ typedef struct HideWish {
     double            occlusion;   /* planned, 0 .. 0.95 */
     double            heading_rad; /* NaN: drawn */
     HideShape         shape;
-    const HideBox    *beside;          /* of SCENARIO_HIDE_BESIDE */
-    const double (*taken)[2];          /* [taken_count] places of others, which keep hide_apart_m away */
+    const HideBox    *beside; /* of SCENARIO_HIDE_BESIDE */
+    const double (*taken)[2]; /* [taken_count] places of others, which keep hide_apart_m away */
     int      taken_count;
     uint64_t seed, number; /* of its random numbers */
 } HideWish;
