@@ -294,8 +294,8 @@ static Status place_world(LocalFrame *frame, WoodsSquare *square, Choices *choic
     HostPlan           of;
     Status             status = plan_of_world(&of, run, plan, host);
     if (status == STATUS_OK)
-        status = run->noted ? local_frame_at(frame, &run->world_note.origin)
-                            : choice_world_frame(frame, basis, config, &of);
+        status =
+            run->noted ? local_frame_at(frame, &run->world_note.origin) : choice_world_frame(frame, basis, config, &of);
     if (status == STATUS_OK && *config->terrain.store) {
         double p_ecef[3];
         if (!choice_aim_place(p_ecef, basis, &of)) memcpy(p_ecef, frame->origin_ecef, sizeof p_ecef);
@@ -329,8 +329,8 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
     if (status == STATUS_OK) status = place_world(&frame, &square, choices, run, plan, host);
     if (status == STATUS_OK) status = choice_time(&out->unix_s, choices, &made->survey, &o->config, &frame);
     if (status == STATUS_OK)
-        status = made_world(made, choices,
-                            &(MadeOf){&o->config, &run->tables, plan, &frame, &square, out->unix_s, o->isa});
+        status =
+            made_world(made, choices, &(MadeOf){&o->config, &run->tables, plan, &frame, &square, out->unix_s, o->isa});
     if (status != STATUS_OK) return status;
     note_world(run, &frame, &square);
     report_visibility(choices, &o->config, made->world.atmosphere);
