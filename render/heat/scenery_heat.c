@@ -243,7 +243,7 @@ static double taken_at(const SceneryTemps *t, int wall, const SceneryObject *o, 
         const double k = fmax(along, 0) * (double)t->sun_k[wall][s];
         all += k, lost += k * shadow[s];
     }
-    return all > 1e-3 ? fmin(lost / (255 * all), 1) : 0;
+    return all > 1e-3 ? clamp(lost / (255 * all), 0, 1) : 0;
 }
 
 /* Between the four nodes about a normal: bilinear, but in two triangles where the hemisphere is folded between them
