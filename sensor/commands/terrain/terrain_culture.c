@@ -55,14 +55,9 @@ static bool parse_at(Wanted *w, const char *text)
 static int parse(Wanted *w, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', OVERWRITE = 256, TREES, STORE, AT, HALF };
-    static const struct option options[] = {{"out", 1, NULL, OUT},
-                                            {"overwrite", 0, NULL, OVERWRITE},
-                                            {"trees", 1, NULL, TREES},
-                                            {"store", 1, NULL, STORE},
-                                            {"at", 1, NULL, AT},
-                                            {"half-width", 1, NULL, HALF},
-                                            {"help", 0, NULL, HELP},
-                                            {NULL, 0, NULL, 0}};
+    static const struct option options[] = {
+        {"out", 1, NULL, OUT}, {"overwrite", 0, NULL, OVERWRITE}, {"trees", 1, NULL, TREES}, {"store", 1, NULL, STORE},
+        {"at", 1, NULL, AT},   {"half-width", 1, NULL, HALF},     {"help", 0, NULL, HELP},   {NULL, 0, NULL, 0}};
     w->half_m = 20000;
     optind = 0; /* restart getopt */
     for (int option; (option = command_line_option(argc, argv, "o:h", options)) != -1;) switch (option) {
@@ -131,8 +126,8 @@ static void print_culture(const Culture *c, const CultureReport *r, const Geodet
            at->lat_rad / rad_per_deg, at->lon_rad / rad_per_deg);
     print_kinds("buildings", c->buildings, use, BUILDING_USES, culture_use_name);
     if (c->buildings > 0)
-        printf("  %.1f .. %.1f m high; height stated of %d, by levels of %d, by use and size of %d\n", r->low_m, r->high_m,
-               r->height_from[0], r->height_from[1], r->height_from[2]);
+        printf("  %.1f .. %.1f m high; height stated of %d, by levels of %d, by use and size of %d\n", r->low_m,
+               r->high_m, r->height_from[0], r->height_from[1], r->height_from[2]);
     if (r->courtyards > 0) printf("  %d courtyards are built over\n", r->courtyards);
     print_kinds("lines", c->lines, line, CULTURE_LINE_KINDS, culture_line_name);
     print_kinds("points", c->points, point, CULTURE_POINT_KINDS, culture_point_name);
