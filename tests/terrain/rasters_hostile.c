@@ -84,7 +84,7 @@ static void answer(WireChannel *c)
             memcpy(c->data + at + sizeof f + 48, "building\0apartments", 20);
             at += f.octets;
         }
-        if (chance(2) == 0) spoil(c->data, at);
+        if (chance(3) == 0) spoil(c->data, at);
         if (chance(6) == 0) memcpy(c->data + 40 + 8 * chance(6), &bad[chance(5)], 8);
         if (chance(20) == 0) memset(c->data, 0xff, wire_data_octets);
     } else if (q->ask >= WIRE_PX_FROM_EARTH) {

@@ -38,13 +38,9 @@ typedef struct Wanted {
 
 static bool parse_at(Wanted *w, const char *text)
 {
-    char         lat_text[64];
-    double       lat, lon;
-    const size_t comma = strcspn(text, ",");
-    if (!text[comma] || comma >= sizeof lat_text) return false;
-    memcpy(lat_text, text, comma);
-    lat_text[comma] = 0;
-    if (!text_to_double(&lat, lat_text) || !text_to_double(&lon, text + comma + 1) || fabs(lat) > 90 || fabs(lon) > 360)
+    double lat, lon;
+    int    end = 0;
+    if (sscanf(text, "%lf,%lf%n", &lat, &lon, &end) != 2 || text[end] || !(fabs(lat) <= 90) || !(fabs(lon) <= 360))
         return false;
     w->at = (Geodetic){.lat_rad = lat * rad_per_deg, .lon_rad = remainder(lon * rad_per_deg, 2 * pi_rad)};
     w->has_at = true;
