@@ -323,8 +323,8 @@ enum { config_paths_size = 4096 };
     ROW(SWITCH, terrain., detail, true, "on|off", \
         "noise of the ground within each surface class (etc/ground_detail.csv); off: classes of one value") \
     ROW(NAME_OR_PATHS, terrain., buildings, "off", config_paths_size, \
-        "files of buildings, walls, roads and power lines (GeoJSON, Shapefile, GeoPackage), separated by commas; invented: " \
-        "villages, farms and works on synthetic terrain; off: none") \
+        "off, invented or files: buildings, walls, roads, power lines and poles of GeoJSON, Shapefile, GeoPackage or " \
+        "FlatGeobuf files, separated by commas, or a list") \
     ROW(PATH, terrain., trees, "", 1024, \
         "table of trees (CSV): lat and lon, or x_m and y_m; kind, height_m, marked; empty: none") \
     ROW(DOUBLE, terrain., clutter, 0, 0, 20, "", \

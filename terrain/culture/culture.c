@@ -31,7 +31,10 @@ static Status grow_records(Culture *c, void *array, int kind, size_t size, int c
     return grow(array, &c->room[kind], size, count, 1, culture_most_records);
 }
 
-static bool is_place(double x_m, double y_m) { return fabs(x_m) <= culture_farthest_m && fabs(y_m) <= culture_farthest_m; }
+static bool is_place(double x_m, double y_m)
+{
+    return fabs(x_m) <= culture_farthest_m && fabs(y_m) <= culture_farthest_m;
+}
 
 static bool are_places(const double (*corner_m)[2], int corners)
 {
@@ -227,9 +230,14 @@ void culture_key_add(CacheKey *key, const Culture *c)
     }
     for (int n = 0; n < c->points; n++) {
         const CulturePoint *p = &c->point[n];
-        const double number[] = {p->x_m, p->y_m, (double)p->base_m, (double)p->heading_rad, (double)p->size_m[0],
-                                 (double)p->size_m[1], (double)p->size_m[2]};
-        const int32_t kind = p->kind;
+        const double        number[] = {p->x_m,
+                                        p->y_m,
+                                        (double)p->base_m,
+                                        (double)p->heading_rad,
+                                        (double)p->size_m[0],
+                                        (double)p->size_m[1],
+                                        (double)p->size_m[2]};
+        const int32_t       kind = p->kind;
         cache_key_add(key, &p->id, sizeof p->id);
         cache_key_add(key, number, sizeof number);
         cache_key_add(key, &kind, sizeof kind);

@@ -125,13 +125,14 @@ enum {
     culture_most_records = 1 << 21, /* of each kind */
     culture_outline_most = 4096,    /* corners of one outline or line */
 };
-static const double culture_farthest_m = 1e6;                       /* from the origin, along each axis */
+static const double culture_farthest_m = 1e6;                         /* from the origin, along each axis */
 static const float  culture_highest_m = 850, culture_widest_m = 1000; /* of anything; of lines and points */
 
 void culture_free(Culture *culture); /* accepts zeroes */
 /* Append a record with its corners; first_corner and corners are set. An outline is turned counter-clockwise, repeated
  * and collinear corners are dropped; one that crosses itself, has no area (under 1 m2) or is not finite is left out and
- * counted, as is any record with a number outside the ranges above. STATUS_NO_MEMORY, or beyond the limits above: STATUS_BAD_VALUE, logged. */
+ * counted, as is any record with a number outside the ranges above. STATUS_NO_MEMORY, or beyond the limits above:
+ * STATUS_BAD_VALUE, logged. */
 Status culture_add_building(Culture *culture, const Building *building, const double (*corner_m)[2], int corners);
 Status culture_add_line(Culture *culture, const CultureLine *line, const double (*corner_m)[2], int corners);
 Status culture_add_point(Culture *culture, const CulturePoint *point);

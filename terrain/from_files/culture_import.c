@@ -307,7 +307,7 @@ static Status read_vectors(Import *i)
     Vectors   vectors = {0};
     VectorEnd end = {0};
     double    box_deg[4];
-    Status    status = culture_rules_open(&i->rules);
+    Status    status = culture_rules_open(&i->rules, NULL);
     box_of(box_deg, i->from);
     i->corner_m = malloc((vector_most_corners + 1) * sizeof *i->corner_m);
     if (status == STATUS_OK && !i->corner_m) status = STATUS_NO_MEMORY;
@@ -333,7 +333,7 @@ static Status leave_twice(Culture *c, CultureReport *report)
     if (status != STATUS_OK) return status;
     for (int n = 0; n < c->points; n++) {
         const CulturePoint *p = &c->point[n];
-        const bool carries = p->kind == CULTURE_POLE || p->kind == CULTURE_MAST;
+        const bool          carries = p->kind == CULTURE_POLE || p->kind == CULTURE_MAST;
         if (carries && culture_line_near(c, CULTURE_POWER_LINE, p->x_m, p->y_m, same_m) >= 0)
             report->left[CULTURE_LEFT_TWICE]++;
         else c->point[kept++] = *p;
@@ -394,10 +394,26 @@ Status culture_open(Culture *out, CultureReport *report, const CultureFiles *fro
     return STATUS_OK;
 }
 
+bool culture_files_good(const char *buildings, const char *trees)
+{
+    LocalFrame frame;
+    Geodetic   middle = {0};
+    Culture    culture = {0};
+    if (*buildings && !culture_middle(&middle, buildings)) return false;
+    const bool good =
+        local_frame_at(&frame, &middle) == STATUS_OK &&
+        culture_open(
+            &culture, NULL,
+            &(CultureFiles){.buildings = buildings, .trees = trees, .frame = &frame, .half_m = culture_farthest_m}) ==
+            STATUS_OK;
+    culture_free(&culture);
+    return good;
+}
+
 bool culture_middle(Geodetic *out, const char *files)
 {
-    Vectors      vectors = {0};
-    const Status status = vectors_open(&vectors, files, "terrain.buildings");
+    Vectors       vectors = {0};
+    const Status  status = vectors_open(&vectors, files, "terrain.buildings");
     const double *b = vectors.box_deg;
     const bool    there = status == STATUS_OK && isfinite(b[0] + b[1] + b[2] + b[3]);
     if (there)

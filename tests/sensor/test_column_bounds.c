@@ -15,6 +15,7 @@
 #include "render/scattering/paths/ground_bounce.h"
 #include "render/scattering/radar_surfaces.h"
 #include "render/scattering/signatures/given_signature.h"
+#include "terrain/from_files/culture_import_private.h"
 #include "sensor/detector/preset.h"
 #include "sensor/quality/quality.h"
 #include "sensor/radar/radar_preset.h"
@@ -137,6 +138,23 @@ static Status read_signature(const char *path)
     given_signature_close(g);
     return status;
 }
+static Status read_culture_tags(const char *path)
+{
+    CultureRules r = {0};
+    const Status status = culture_rules_open(&r, path);
+    culture_rules_close(&r);
+    return status;
+}
+static Status read_trees(const char *path)
+{
+    const LocalFrame frame = {0};
+    Culture          c = {0};
+    CultureReport    r = {0};
+    const Status     status =
+        culture_trees_read(&c, &r, &(CultureFiles){.trees = path, .frame = &frame, .half_m = culture_farthest_m});
+    culture_free(&c);
+    return status;
+}
 static Status read_weather(const char *path)
 {
     WeatherRows  rows = {0};
@@ -169,6 +187,10 @@ static const struct Reader {
     {"radar/materials.csv", read_radar_materials, NULL},
     {"radar/oxygen_lines.csv", read_oxygen, NULL},
     {"radar/water_lines.csv", read_water, NULL},
+    {"tags_height", read_culture_tags, "@,key,value,makes,kind,width_m,surface\n@,a,*,building,,,\n"},
+    {"tags_width", read_culture_tags, "@,key,value,makes,kind,height_m,surface\n@,a,*,building,,,\n"},
+    {"trees", read_trees, "@,lat,lon,height_m\n@,47,13,5\n"},
+    {"trees_enu", read_trees, "@,x_m,y_m,height_m\n@,1,2,5\n"},
     {"weather", read_weather, "@,unix_s,air_temp_k\n@,0,280\n"},
     {"weather_air", read_weather, "@,unix_s\n@,0\n"},
     {"given_heat", read_given_heat, "@,entity,part,t_s,temp_k\n@,*,*,0,300\n"},

@@ -1,6 +1,6 @@
-/* Culture of files: the same content as GeoJSON, GeoPackage and Shapefile and in two coordinate systems, made by ogr2ogr,
- * is the same records; places and base heights against geodesy worked out otherwise; what is left out is counted; a
- * table of trees; hostile files. labels: small */
+/* Culture of files: the same content as GeoJSON, GeoPackage and Shapefile and in two coordinate systems, made by
+ * ogr2ogr, is the same records; places and base heights against geodesy worked out otherwise; what is left out is
+ * counted; a table of trees; hostile files. labels: small */
 #include "tests/terrain/raster_lab.h"
 
 #include "terrain/earth/geodesy.h"
@@ -77,8 +77,8 @@ static Status open_names(Culture *c, CultureReport *r, const char *names, const 
         name += length + (name[length] != 0);
     }
     if (trees) path_of(table, trees);
-    return culture_open(c, r,
-                        &(CultureFiles){.buildings = all, .trees = table, .frame = &frame, .ground = hill, .half_m = 16000});
+    return culture_open(
+        c, r, &(CultureFiles){.buildings = all, .trees = table, .frame = &frame, .ground = hill, .half_m = 16000});
 }
 
 /* ---- places ------------------------------------------------------------------------------------------ */
@@ -86,8 +86,8 @@ static Status open_names(Culture *c, CultureReport *r, const char *names, const 
 /* Longitude and latitude of a place on the hill, in degrees, by ECEF. */
 static void degrees_of(double out[2], double x_m, double y_m)
 {
-    double   p_ecef[3];
-    Geodetic g;
+    double       p_ecef[3];
+    Geodetic     g;
     const double z_m = hill(NULL, x_m, y_m);
     ecef_from_enu(p_ecef, &frame, (const double[3]){x_m, y_m, isnan(z_m) ? 300 : z_m});
     CHECK(geodetic_from_ecef(&g, p_ecef) == STATUS_OK);
@@ -115,8 +115,8 @@ static void begin_file(void)
 static void add_feature(const char *type, const char *opens, const char *closes, const char *properties,
                         const double (*p)[2], int count)
 {
-    add("%s{\"type\":\"Feature\",\"properties\":{%s},\"geometry\":{\"type\":\"%s\",\"coordinates\":%s", used > 50 ? ",\n" : "",
-        properties, type, opens);
+    add("%s{\"type\":\"Feature\",\"properties\":{%s},\"geometry\":{\"type\":\"%s\",\"coordinates\":%s",
+        used > 50 ? ",\n" : "", properties, type, opens);
     for (int k = 0; k < count; k++) {
         double deg[2];
         degrees_of(deg, p[k][0], p[k][1]);
@@ -254,8 +254,8 @@ static void mixed_features(void **state)
 {
     (void)state;
     static const double hedge[][2] = {{0, -100}, {12.1, -100}}, poles[][2] = {{-500, -300}, {0, -280}, {900, 900}};
-    Culture       one, other;
-    CultureReport r;
+    Culture             one, other;
+    CultureReport       r;
     need_judge();
     begin_file();
     add_feature("LineString", "[", "]", "\"power\":\"line\"", way, 3);
@@ -294,7 +294,8 @@ static void what_cannot_be_is_counted(void **state)
     static const double large[][2] = {{-900, -900}, {900, -900}, {900, 900}, {-900, 900}, {-900, -900}};
     static const double none[][2] = {{0, 12500}, {9, 12500}, {9, 12509}, {0, 12509}, {0, 12500}};
     static const double out[][2] = {{15990, 0}, {16010, 0}, {16010, 9}, {15990, 9}, {15990, 0}};
-    static const double leaves[][2] = {{15000, 0}, {15900, 0}, {25000, 0}, {60000, 0}, {60000, 3000}, {15000, 100}, {14000, 100}};
+    static const double leaves[][2] = {{15000, 0},    {15900, 0},   {25000, 0},  {60000, 0},
+                                       {60000, 3000}, {15000, 100}, {14000, 100}};
     Culture             c;
     CultureReport       r;
     begin_file();
@@ -302,7 +303,8 @@ static void what_cannot_be_is_counted(void **state)
     add_feature("Polygon", "[[", "]]", "\"building\":\"yes\"", large, 5);
     add_feature("Polygon", "[[", "]]", "\"building\":\"yes\"", none, 5);
     add_feature("Polygon", "[[", "]]", "\"building\":\"yes\"", out, 5);
-    add_feature("Polygon", "[[", "]]", "\"building\":\"yes\",\"height\":\"9999\",\"building:levels\":\"few\"", house, 5);
+    add_feature("Polygon", "[[", "]]", "\"building\":\"yes\",\"height\":\"9999\",\"building:levels\":\"few\"", house,
+                5);
     add_feature("LineString", "[", "]", "\"highway\":\"primary\"", leaves, 7);
     add(",\n{\"type\":\"Feature\",\"properties\":{\"building\":\"yes\"},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":"
         "[[[13,147],[13.1,147],[13.1,147.1],[13,147]]]}}");
@@ -332,11 +334,12 @@ static void courtyards_are_counted(void **state)
     (void)state;
     Culture       c;
     CultureReport r;
-    save("yard.geojson",
-         "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{\"building\":\"yes\"},\"geometry\":"
-         "{\"type\":\"MultiPolygon\",\"coordinates\":[[[[13.02,47.05],[13.021,47.05],[13.021,47.051],[13.02,47.051],[13.02,47.05]],"
-         "[[13.0203,47.0503],[13.0206,47.0503],[13.0206,47.0506],[13.0203,47.0503]]],"
-         "[[[13.03,47.05],[13.031,47.05],[13.031,47.051],[13.03,47.05]]]]}}]}");
+    save(
+        "yard.geojson",
+        "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{\"building\":\"yes\"},\"geometry\":"
+        "{\"type\":\"MultiPolygon\",\"coordinates\":[[[[13.02,47.05],[13.021,47.05],[13.021,47.051],[13.02,47.051],[13.02,47.05]],"
+        "[[13.0203,47.0503],[13.0206,47.0503],[13.0206,47.0506],[13.0203,47.0503]]],"
+        "[[[13.03,47.05],[13.031,47.05],[13.031,47.051],[13.03,47.05]]]]}}]}");
     assert_int_equal(open_names(&c, &r, "yard.geojson", NULL), STATUS_OK);
     CHECK(c.buildings == 2 && c.building[0].corners == 4 && c.building[1].corners == 3 && r.courtyards == 1);
     CHECK(c.building[0].id != c.building[1].id);
@@ -353,8 +356,8 @@ static void a_table_of_trees(void **state)
     double        deg[2];
     degrees_of(deg, 300, -400);
     used = 0;
-    add("# trees\nlat,lon,kind,height_m,marked\n%.12f,%.12f,birch,14.5,yes\n%.12f,%.12f,pine,,\n", deg[1], deg[0], deg[1],
-        deg[0]);
+    add("# trees\nlat,lon,kind,height_m,marked\n%.12f,%.12f,birch,14.5,yes\n%.12f,%.12f,pine,,\n", deg[1], deg[0],
+        deg[1], deg[0]);
     save("t.csv", text);
     save("xy.csv", "x_m,y_m,marked\n10,20,no\n-30.5,40,yes\n99999,0,no\n");
     assert_int_equal(open_names(&c, &r, "", "t.csv"), STATUS_OK);
@@ -367,8 +370,8 @@ static void a_table_of_trees(void **state)
     assert_int_equal(open_names(&c, &r, "", "xy.csv"), STATUS_OK);
     CHECK(c.trees == 2 && c.tree[1].x_m == -30.5 && c.tree[1].marked && r.left[CULTURE_LEFT_OUTSIDE] == 1);
     culture_free(&c);
-    static const char *const bad[] = {"x_m,kind\n1,pine\n", "x_m,y_m,kind\n1,2,palm\n", "lat,lon\n91,0\n", "x_m,y_m,height_m\n1,2,500\n",
-                                      "x_m,y_m,marked\n1,2,perhaps\n", "height_m\n3\n"};
+    static const char *const bad[] = {"x_m,kind\n1,pine\n",          "x_m,y_m,kind\n1,2,palm\n",      "lat,lon\n91,0\n",
+                                      "x_m,y_m,height_m\n1,2,500\n", "x_m,y_m,marked\n1,2,perhaps\n", "height_m\n3\n"};
     log_set_sink(check_listen, NULL);
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         save("bad.csv", bad[k]);
@@ -395,9 +398,13 @@ static Status quiet_open(const char *names)
 static void names_that_are_no_files(void **state)
 {
     (void)state;
-    static const char *const names[] = {
-        "/nowhere.geojson", "http://127.0.0.1:9/a.geojson", "/vsicurl/http://127.0.0.1:9/a.geojson", "nothing.gpkg",
-        "PG:dbname=x", "/vsistdin/", "/vsicurl_streaming/http://127.0.0.1:9/a.zip"};
+    static const char *const names[] = {"/nowhere.geojson",
+                                        "http://127.0.0.1:9/a.geojson",
+                                        "/vsicurl/http://127.0.0.1:9/a.geojson",
+                                        "nothing.gpkg",
+                                        "PG:dbname=x",
+                                        "/vsistdin/",
+                                        "/vsicurl_streaming/http://127.0.0.1:9/a.zip"};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++)
         if (quiet_open(names[k]) == STATUS_OK || !strstr(check_said, "terrain.buildings"))
             fail_msg("%s: %s", names[k], check_said);
@@ -457,8 +464,9 @@ static void a_milliard_of_corners(void **state)
     for (int k = 0; k < 4; k++) lab_double(&file, 13, false);
     path_of(path, "many.shp");
     lab_save(&file, path);
-    save("many.prj", "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],"
-                     "UNIT[\"degree\",0.0174532925199433]]");
+    save("many.prj",
+         "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],"
+         "UNIT[\"degree\",0.0174532925199433]]");
     Culture       c = {0};
     CultureReport r;
     log_set_sink(check_listen, NULL);
@@ -498,12 +506,14 @@ static void spoilt_files(void **state)
             Culture       c = {0};
             CultureReport r;
             log_set_sink(check_listen, NULL);
-            const Status status = open_names(&c, &r, strstr(names[k], "a.dbf") || strstr(names[k], "a.shx") ? "a.shp" : names[k], NULL);
+            const Status status =
+                open_names(&c, &r, strstr(names[k], "a.dbf") || strstr(names[k], "a.shx") ? "a.shp" : names[k], NULL);
             log_set_sink(NULL, NULL);
             opened += status == STATUS_OK, refused += status != STATUS_OK;
             for (int b = 0; b < c.buildings; b++)
                 CHECK(c.building[b].corners >= 3 && c.building[b].ridge_m <= 850 && c.building[b].eaves_m > 0);
-            for (int p = 0; p < c.corners; p++) CHECK(fabs(c.corner_m[p][0]) <= 16000 && fabs(c.corner_m[p][1]) <= 16000);
+            for (int p = 0; p < c.corners; p++)
+                CHECK(fabs(c.corner_m[p][0]) <= 16000 && fabs(c.corner_m[p][1]) <= 16000);
             culture_free(&c);
         }
         file = fopen(path, "wb");
@@ -518,10 +528,11 @@ static void archives(void **state)
     (void)state;
     char line[512];
     need_judge();
-    snprintf(line, sizeof line,
-             "cd %s && (printf '{\"type\":\"FeatureCollection\",\"features\":['; head -c 50000000 /dev/zero | tr '\\0' ' ') "
-             ">blanks.geojson && gzip -k blanks.geojson && gzip -k places.geojson",
-             folder);
+    snprintf(
+        line, sizeof line,
+        "cd %s && (printf '{\"type\":\"FeatureCollection\",\"features\":['; head -c 50000000 /dev/zero | tr '\\0' ' ') "
+        ">blanks.geojson && gzip -k blanks.geojson && gzip -k places.geojson",
+        folder);
     CHECK(system(line) == 0);
     snprintf(line, sizeof line, "/vsigzip/%s/places.geojson.gz", folder);
     CHECK(quiet_open(line) == STATUS_OK);
@@ -529,16 +540,47 @@ static void archives(void **state)
     CHECK(quiet_open(line) != STATUS_OK);
 }
 
-/* What a reader sends that a file has taken over: never more than a refusal. */
+/* A reader that a file has taken over sends sound and spoilt replies: what is taken is as any record. */
+static void whatever_it_sends(void **state)
+{
+    (void)state;
+    enum { rounds = 200 };
+    static char   path[4200];
+    char          self[4096];
+    const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+    int           opened = 0, refused = 0, taken = 0;
+    CHECK(length > 0);
+    self[length] = 0;
+    *strrchr(self, '/') = 0;
+    snprintf(path, sizeof path, "%s/rasters_hostile", self);
+    raster_child_program(path);
+    raster_child_patience(0.5);
+    log_set_sink(check_listen, NULL);
+    for (int n = 0; n < rounds; n++) {
+        Culture       c = {0};
+        CultureReport r;
+        const Status  status = open_names(&c, &r, "a.geojson", NULL);
+        opened += status == STATUS_OK, refused += status != STATUS_OK, taken += c.buildings;
+        for (int b = 0; b < c.buildings; b++) CHECK(c.building[b].corners >= 3 && c.building[b].ridge_m <= 850);
+        for (int p = 0; p < c.corners; p++) CHECK(fabs(c.corner_m[p][0]) <= 16000 && fabs(c.corner_m[p][1]) <= 16000);
+        culture_free(&c);
+    }
+    log_set_sink(NULL, NULL);
+    raster_child_patience(0);
+    raster_child_program(NULL);
+    if (opened < 2 || refused < 2 || taken < 2) fail_msg("%d opened, %d refused, %d taken", opened, refused, taken);
+}
+
+/* The same octet by octet, without a process: never more than a refusal. */
 static void replies_are_checked(void **state)
 {
     (void)state;
-    static double  room[64];
-    uint8_t       *data = (uint8_t *)room;
-    VectorPart     part;
-    size_t         at = 0;
-    const double   place[2] = {0.1, 0.8};
-    WireFeature    w = {.octets = sizeof w + 16 + 16, .shape = WIRE_POINT, .corners = 1, .tags = 1, .texts = 13};
+    static double room[64];
+    uint8_t      *data = (uint8_t *)room;
+    VectorPart    part;
+    size_t        at = 0;
+    const double  place[2] = {0.1, 0.8};
+    WireFeature   w = {.octets = sizeof w + 16 + 16, .shape = WIRE_POINT, .corners = 1, .tags = 1, .texts = 13};
     memcpy(data + sizeof w, place, sizeof place);
     memcpy(data + sizeof w + 16, "building\0yes", 13);
     memcpy(data, &w, sizeof w);
@@ -578,6 +620,7 @@ int main(void)
         cmocka_unit_test(a_milliard_of_corners),
         cmocka_unit_test(spoilt_files),
         cmocka_unit_test(archives),
+        cmocka_unit_test(whatever_it_sends),
         cmocka_unit_test(replies_are_checked),
     };
     return cmocka_run_group_tests(tests, open_lab, close_lab);
