@@ -5,7 +5,13 @@
  * opening goes in through a splayed frame to a pane or leaf. */
 #include "entities/scenery/scenery_buildings_private.h"
 
-enum { columns_most = 48, storeys_most = 100, lines_most = 2 * columns_most, rows_most = 2 * storeys_most + 1 };
+enum {
+    windows_most = 20000,
+    columns_most = 48,
+    storeys_most = 100,
+    lines_most = 2 * columns_most,
+    rows_most = 2 * storeys_most + 1
+};
 
 static const double pane_m = 0.1, broken_m = 0.25, frame_m = 0.07, corner_m = 0.5;
 
@@ -274,6 +280,12 @@ void building_walls(BuildingWork *w)
 {
     static _Thread_local Facade f; /* 80 KB */
     const int                   front = front_of(w);
+    double                      around_m = 0;
+    for (int k = 0; k < w->n; k++) {
+        const int l = (k + 1) % w->n;
+        around_m += hypot(w->p[l][0] - w->p[k][0], w->p[l][1] - w->p[k][1]);
+    }
+    const bool bare = around_m / 3 * w->b->levels > windows_most; /* as no building is: without openings */
     for (int k = 0; k < w->n; k++) {
         f.number = k, f.a = w->p[k], f.b = w->p[(k + 1) % w->n];
         f.length_m = hypot(f.b[0] - f.a[0], f.b[1] - f.a[1]);
@@ -281,7 +293,7 @@ void building_walls(BuildingWork *w)
         set_storeys(&f, w);
         set_columns(&f, w, k == front);
         set_lines(&f, w);
-        if (f.columns > 0 && f.rows > 1) {
+        if (f.columns > 0 && f.rows > 1 && !bare) {
             make_grid(w, &f);
             continue;
         }
