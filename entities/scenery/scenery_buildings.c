@@ -91,7 +91,8 @@ static Status list_points(Items *items, const Culture *c)
         const CulturePoint *p = &c->point[n];
         const double        at[2] = {p->x_m, p->y_m};
         const float         most = fmaxf(p->size_m[0], fmaxf(p->size_m[1], p->size_m[2]));
-        if (!is_of_this_world(at, at, (double)p->base_m, (double)most)) items->left_out++;
+        const float         least = fminf(p->size_m[0], fminf(p->size_m[1], p->size_m[2]));
+        if (!is_of_this_world(at, at, (double)p->base_m, (double)most) || least < 0.01F) items->left_out++;
         else status = add_item(items, p->x_m, p->y_m, ITEM_POINT, n, 0);
     }
     return status;
@@ -125,7 +126,8 @@ static Status list_items(Items *items, const Culture *c)
     if (status == STATUS_OK) status = list_points(items, c);
     if (status == STATUS_OK) status = list_pieces(items, c);
     if (items->left_out > 0)
-        log_warn("scenery: records left out: %d; they are wider than %g m, higher than %g m or farther than %g m away",
+        log_warn("scenery: records left out: %d; they are wider than %g m, higher than %g m, thinner than 1 cm or "
+                 "farther than %g m away",
                  items->left_out, wide_most_m, high_most_m, place_most_m);
     if (status != STATUS_OK) return status;
     if (items->count > 1) qsort(items->item, (size_t)items->count, sizeof *items->item, item_order);
