@@ -55,7 +55,7 @@ static void vents(BuildingWork *w)
 void building_make(CellMesh *cell, const Culture *culture, const Building *b, const double origin[3],
                    SceneryGround *ground_m, void *user)
 {
-    BuildingWork w = {.b = b, .cell = cell, .n = b->corners, .ground_m = ground_m, .user = user};
+    BuildingWork w = {.culture = culture, .b = b, .cell = cell, .n = b->corners, .ground_m = ground_m, .user = user};
     w.p = malloc((size_t)w.n * sizeof *w.p);
     if (!w.p) {
         cell->status = STATUS_NO_MEMORY;

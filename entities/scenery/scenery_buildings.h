@@ -22,8 +22,9 @@ static const double scenery_overhang_m = 0.4; /* of roofs, across the wall; less
 /* ENU z of the ground at a place; NaN: not known there. */
 typedef double SceneryGround(void *user, double x_m, double y_m);
 
-/* Appends the cells of all buildings, lines and points of a culture. The same records give the same bits. ground_m:
- * NULL: as high as the bases. STATUS_NO_MEMORY: the scenery holds what it held. */
+/* Appends the cells of all buildings, lines and points of a culture (culture_index was called: else doors know no
+ * drives). The same records give the same bits. ground_m: NULL: as high as the bases. STATUS_NO_MEMORY: the scenery
+ * holds what it held. */
 Status scenery_add_buildings(Scenery *scenery, const Culture *culture, SceneryGround *ground_m, void *user);
 
 #endif

@@ -106,6 +106,7 @@ double record_random(uint64_t id, uint32_t stream);
 
 /* A building being made. */
 typedef struct BuildingWork {
+    const Culture  *culture;
     const Building *b;
     CellMesh       *cell;
     int             n;

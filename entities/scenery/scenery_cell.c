@@ -84,6 +84,12 @@ uint32_t cell_vertex(CellMesh *cell, const double p[3], const double n[3])
 
 void cell_triangle(CellMesh *cell, int slot, uint32_t a, uint32_t b, uint32_t c)
 {
+    /* two corners at one place: its edges cancel, so what is closed is so without it */
+    const size_t size = sizeof *cell->model.vertex;
+    if (cell->status != STATUS_OK || !memcmp(cell->model.vertex[a], cell->model.vertex[b], size) ||
+        !memcmp(cell->model.vertex[b], cell->model.vertex[c], size) ||
+        !memcmp(cell->model.vertex[c], cell->model.vertex[a], size))
+        return;
     if (!grow(cell, &cell->pending, &cell->pending_room, cell->pendings + 1, sizeof *cell->pending)) return;
     uint32_t *t = cell->pending[cell->pendings++];
     t[0] = a, t[1] = b, t[2] = c, t[3] = (uint32_t)slot;

@@ -217,6 +217,58 @@ static void windows_stand_in_rows_and_doors_on_the_floor(void **state)
     scenery_free(&s);
 }
 
+/* A garage opens at an end, towards the drive. */
+static void doors_open_on_drives(void **state)
+{
+    (void)state;
+    static const double drive[2][2] = {{22, 14}, {60, 14}};
+    Culture             c = {0};
+    Scenery             s = {0};
+    Building            b = house;
+    const CultureLine   way = {.id = 5, .width_m = 4, .kind = CULTURE_TRACK, .surface = 1};
+    b.use = BUILDING_SHED;
+    add(&c, &b, rectangle, 4);
+    CHECK(culture_add_line(&c, &way, drive, 2) == STATUS_OK && culture_index(&c) == STATUS_OK);
+    CHECK(scenery_add_buildings(&s, &c, NULL, NULL) == STATUS_OK);
+    int doors = 0;
+    for (int t = 0; t < s.model[0].triangle_count; t++) {
+        const Facet f = facet(&s, 0, t);
+        if (!is_part(&f, "door")) continue;
+        doors++;
+        for (int k = 0; k < 3; k++) CHECK_NEAR(f.p[k][0], 21.9, 1e-6);
+    }
+    assert_int_equal(doors, 2);
+    scenery_free(&s), culture_free(&c);
+}
+
+/* Panes break, soot comes, then roofs have holes and nothing is warm; a ruin has neither. */
+static void damage_goes_on_by_state(void **state)
+{
+    (void)state;
+    int    panes[4] = {0}, warm[4] = {0}, soot[4] = {0};
+    double roof_m2[4] = {0};
+    for (uint64_t id = 0; id < 10; id++)
+        for (int damage = 0; damage < 4; damage++) {
+            Building b = with_roof(ROOF_HIPPED);
+            b.id = id, b.damage = (uint8_t)damage;
+            Scenery s = scenery_of(&b, rectangle, 4);
+            roof_m2[damage] += covered_m2(NULL, &s, "roof", 0);
+            for (int k = 0; k < s.model[0].part_count; k++) {
+                const ModelPart *part = &s.model[0].part[k];
+                const bool       is_soot = !strcmp(part->material, "masonry_sooted");
+                panes[damage] += strcmp(part->material, "glass_window") ? 0 : part->triangle_count / 2;
+                warm[damage] += part->role != HEAT_PASSIVE, soot[damage] += is_soot ? part->triangle_count : 0;
+            }
+            scenery_free(&s);
+        }
+    CHECK(soot[0] == 0 && soot[1] > 500 && soot[2] > soot[1]);
+    CHECK(panes[1] < 0.75 * panes[0] && panes[1] > 0.45 * panes[0]); /* three in five */
+    CHECK(panes[2] < 0.35 * panes[0] && panes[2] > 0 && panes[3] == 0);
+    CHECK(warm[0] > 0 && warm[1] > 0 && warm[2] == 0 && warm[3] == 0);
+    CHECK_NEAR(roof_m2[1], roof_m2[0], 1e-6);
+    CHECK(roof_m2[2] < 0.95 * roof_m2[0] && roof_m2[2] > 0.6 * roof_m2[0] && roof_m2[3] == 0);
+}
+
 static double slope_of_ground(void *user, double x_m, double y_m)
 {
     (void)y_m;
@@ -379,6 +431,8 @@ int main(void)
         cmocka_unit_test(a_hipped_roof_is_the_lowest_of_its_planes),
         cmocka_unit_test(every_slope_of_a_hipped_roof_is_as_steep),
         cmocka_unit_test(windows_stand_in_rows_and_doors_on_the_floor),
+        cmocka_unit_test(doors_open_on_drives),
+        cmocka_unit_test(damage_goes_on_by_state),
         cmocka_unit_test(buildings_on_a_slope_have_no_windows_in_the_ground),
         cmocka_unit_test(parts_have_known_names_and_materials_that_exist),
         cmocka_unit_test(a_cell_is_one_model_and_its_parts_name_their_buildings),
