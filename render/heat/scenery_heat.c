@@ -238,8 +238,8 @@ static double blend(const float *at, int cell, int facets, const double s[2])
     return low + s[1] * (high - low);
 }
 
-/* Kelvins that the sun of the day past has left on a normal, by the wall's memory; and the share of them that shade took
- * (of 255 of each slot; NULL: none). */
+/* Kelvins that the sun of the day past has left on a normal, by the wall's memory; and the share of them that shade
+ * took (of 255 of each slot; NULL: none). */
 static double sun_of_day(double *taken, const SceneryTemps *t, int wall, const double n_enu[3], const uint8_t *shadow)
 {
     const SceneryWalls *w = &t->heat->walls;
@@ -254,7 +254,8 @@ static double sun_of_day(double *taken, const SceneryTemps *t, int wall, const d
 
 /* In the sun, and in its shade, where it leaves all but sun_k of this normal to the facets: that has a kink where it
  * grazes. */
-static void facets_k(double *lit_k, double *shade_k, const SceneryTemps *t, int wall, const double n_enu[3], double sun_k)
+static void facets_k(double *lit_k, double *shade_k, const SceneryTemps *t, int wall, const double n_enu[3],
+                     double sun_k)
 {
     const SceneryWalls *w = &t->heat->walls;
     const int           facets = t->heat->config.heat.facets;

@@ -184,8 +184,7 @@ static void fill_wall(const SceneryWalls *w, WallsTable *out, int i)
     const double       now_s = (double)w->now.index * w->config->heat.step_s;
     const double      *temp_k = w->now.temp_k + wall->first;
     float             *face_k = out->face_k + (size_t)i * (size_t)w->columns, *sun_k = out->sun_k[i];
-    out->behind_k[i] =
-        wall_behind_k(&wall->kind.of, solar_hour(w, now_s), w->now.day_k, out->air_k, w->now.room_k[i]);
+    out->behind_k[i] = wall_behind_k(&wall->kind.of, solar_hour(w, now_s), w->now.day_k, out->air_k, w->now.room_k[i]);
     memset(sun_k, 0, sizeof out->sun_k[i]);
     for (int age = 0; age < heat_day_slots; age++) {
         const int half = half_hour_of(now_s - age * slot_s), slot = w->slot_of[half];

@@ -124,13 +124,14 @@ static void a_turned_house_has_its_own_normals(void **state)
             const double n[3] = {sin(turn + k * pi_rad / 2), cos(turn + k * pi_rad / 2), 0};
             CHECK_NEAR(scenery_temp_k(now, 0, 0, here, n), alone_k(alone, hour, n), 1e-4);
         }
-        const double up[3] = {0, 0, 1}, down[3] = {0.6, 0, -0.8}, east[3] = {1, 0, 0}, below[3] = {0, 0, -1},
-                     north[3] = {0, 1, 0};
+        const double up[3] = {0, 0, 1}, down[3] = {0.6, 0, -0.8}, east[3] = {1, 0, 0}, below[3] = {0, 0, -1};
         CHECK_NEAR(scenery_temp_k(now, 0, 1, here, up), alone_k(felt, hour, up), 1e-4);
         /* what faces down has no more sun than the wall of that side */
         CHECK(scenery_temp_k(now, 0, 0, here, down) < scenery_temp_k(now, 0, 0, here, east) + 1e-3);
         CHECK(scenery_temp_k(now, 0, 0, here, down) > scenery_temp_k(now, 0, 0, here, below) - 2);
-        CHECK_NEAR(scenery_temp_k(now, 0, 0, here, below), scenery_temp_k(now, 0, 0, here, north), 3);
+        WallSeen shade;
+        scenery_wall_seen(&shade, at(alone, hour), east, 1);
+        CHECK_NEAR(scenery_temp_k(now, 0, 0, here, below), shade.temp_k, 1e-4);
         CHECK(scenery_temp_k(now, 0, 7, here, up) == now->air_k); /* no such part */
     }
     scenery_heat_destroy(heat), scenery_heat_destroy(alone), scenery_heat_destroy(felt);
@@ -160,8 +161,9 @@ static void walls_follow_the_sun(void **state)
 }
 
 /* Normals that 33 facets have and the usual 17 have not: walls, roofs of at most 60 degrees, and what is steeper. The
- * largest errors are where sunlight grazes: 0.8 of 900 W/m2 over 22 W/(m2 K) is 33 K per unit of its cosine, whose kink
- * lies up to a quarter of two facets' 0.12 from their straight line, along both axes: 2 K. */
+ * largest errors are where sunlight grazes: 33 K per unit of its cosine of sheet, whose
+ * kink lies up to a quarter of two facets' 0.12 from their straight line, along both axes: 2 K, but for the memory of
+ * it. */
 static void facets_are_close(void **state)
 {
     (void)state;
@@ -183,8 +185,8 @@ static void facets_are_close(void **state)
         for (int i = 0; i < 3; i++) rms_k[i] = sqrt(sum[i] / count[i]);
         print_message("%s: between facets: walls %.2f K rms, %.2f K at most; roofs %.2f, %.2f; steeper %.2f, %.2f\n",
                       of[k][0], rms_k[0], worst_k[0], rms_k[1], worst_k[1], rms_k[2], worst_k[2]);
-        CHECK(rms_k[0] < 0.1 && rms_k[1] < 0.25 && rms_k[2] < 0.25);
-        CHECK(worst_k[0] < 0.6 && worst_k[1] < 2.3 && worst_k[2] < 2.3);
+        CHECK(rms_k[0] < 0.1 && rms_k[1] < 0.2 && rms_k[2] < 0.25);
+        CHECK(worst_k[0] < 0.6 && worst_k[1] < 1.4 && worst_k[2] < 1.5);
         scenery_heat_destroy(fine), scenery_heat_destroy(usual);
         arena_reset(lab.arena);
     }
@@ -249,15 +251,17 @@ static void wood_in_the_east(ShadowStand *out, const void *user, double x_m, dou
     *out = x_m > 0 ? (ShadowStand){60, 0, 20, 0.1f} : (ShadowStand){.open = 1};
 }
 
-/* Three houses: in the open, deep in a dense wood, and 16 m west of its edge, whose trees of 20 m take the morning's sun
- * and no other. */
+/* Three houses: in the open, deep in a dense wood, and 16 m west of its edge, whose trees of 20 m take the morning's
+ * sun and no other. */
 static void a_wood_shades_walls(void **state)
 {
     (void)state;
     enum { posts = 65 };
     Elevation ground = {0};
-    CHECK(elevation_level_create(&ground, 0, &(ElevationGrid){posts, posts, -512, -512, 16, -100, 1.0 / 64}) == STATUS_OK);
-    for (int t = 0; t < ground.level[0].tiles_x * ground.level[0].tiles_y; t++) ground.level[0].tile[t] = (ElevationTile){0, 0};
+    CHECK(elevation_level_create(&ground, 0, &(ElevationGrid){posts, posts, -512, -512, 16, -100, 1.0 / 64}) ==
+          STATUS_OK);
+    for (int t = 0; t < ground.level[0].tiles_x * ground.level[0].tiles_y; t++)
+        ground.level[0].tile[t] = (ElevationTile){0, 0};
     ground.level[0].plain = true;
     for (int j = 0; j < posts; j++)
         for (int i = 0; i < posts; i++) elevation_set_post(&ground.level[0], i, j, 6400);
@@ -293,8 +297,8 @@ static void a_wood_shades_walls(void **state)
     /* the edge: its east wall has lost the morning, its south wall little of it */
     const double lost_east = scenery_temp_k(t, 0, 0, here, east) - scenery_temp_k(t, 2, 0, here, east),
                  lost_south = scenery_temp_k(t, 0, 0, here, south) - scenery_temp_k(t, 2, 0, here, south);
-    print_message("at 14 h, 20 m west of a wood: an east wall has lost %.1f K, a south wall %.1f K of %.1f K\n", lost_east,
-                  lost_south, sun.temp_k - shade.temp_k);
+    print_message("at 14 h, 20 m west of a wood: an east wall has lost %.1f K, a south wall %.1f K of %.1f K\n",
+                  lost_east, lost_south, sun.temp_k - shade.temp_k);
     CHECK(lost_east > 2 && lost_south < 0.5 * lost_east && lost_south > -0.01);
     scenery_heat_destroy(heat), scenery_heat_destroy(alone);
     heat_shadow_destroy(map);
