@@ -13,10 +13,11 @@
  * the state are as warm as its patches: the sun and wind of another heading than theirs are the error of that.
  *
  * Shade. A wall that faces away from the sun has none of it. With a ShadowMap, relief and plants shade an object of
- * buildings as they do the ground where the place is: the share of the past direct sun that was taken, by the
- * construction's own memory of it. Buildings do not shade each other or themselves: a wall in a neighbour's shadow is
- * too warm by up to what shade and sun differ by, 5 .. 25 K about noon (tests/render/test_scenery_heat.c says it of
- * constructions), and eaves likewise. Clutter stands in the open.
+ * buildings as they do the ground where the place is, or a cell of the map before a wall: the share of the past direct
+ * sun that was taken, by the construction's own memory of it. So a wall is in the shade as its foot is, and what the map
+ * does not know (eaves, a wing of the same house, a neighbour within a cell) leaves it too warm by up to what shade and
+ * sun differ by: 11 K of brick and of sheet at 14 h in June (tests/render/test_scenery_heat.c). Its sky is open. Clutter
+ * stands in the open.
  *
  * Temperatures are at the height of the weather's thermometer over the origin, as the ground's are. */
 #ifndef RENDER_HEAT_SCENERY_HEAT_H
@@ -27,7 +28,7 @@
 #include "render/heat/heat.h"
 #include "render/heat/part_table.h"
 
-enum { scenery_most_walls = 192, scenery_most_states = 256 };
+enum { scenery_most_walls = 192, scenery_most_states = 256, scenery_most_facets = 33 };
 static const double clutter_step_s = 60;
 
 typedef struct SceneryHeat  SceneryHeat;

@@ -1,5 +1,5 @@
-/* How warm clutter is by class, against published ranges: engines that run and that stopped, hides, embers, drums, crusts,
- * stones; at noon and before sunrise of a summer's day. labels: physics */
+/* How warm clutter is by class, against published ranges: engines that run and that stopped, hides, embers, drums,
+ * crusts, stones; at noon and before sunrise of a summer's day. labels: physics */
 #include "tests/render/hand_models.h"
 #include "tests/scenes/paper_day.h"
 
@@ -122,7 +122,10 @@ static Scenery made(const int *does, const char *const *shape, int count)
     for (int k = 0; k < count; k++) {
         CHECK(parametric_build(&s.model[k], shape[k], 0.1) == STATUS_OK);
         s.state[k] = state_of(k, does[k]);
-        s.object[k] = (SceneryObject){.kind = SCENERY_CLUTTER, .class = CLUTTER_CAR, .model = k, .state = k,
+        s.object[k] = (SceneryObject){.kind = SCENERY_CLUTTER,
+                                      .class = CLUTTER_CAR,
+                                      .model = k,
+                                      .state = k,
                                       .r_enu_from_body = {0, 1, 0, 1, 0, 0, 0, 0, -1}};
     }
     s.models = s.objects = s.states = count;
@@ -158,7 +161,8 @@ static void as_warm_as_published(void **state)
     CHECK(faults == 0);
 }
 
-/* Engines cool for hours: each that stopped later is warmer, and one that stopped a day ago is as one that never ran. */
+/* Engines cool for hours: each that stopped later is warmer, and one that stopped a day ago is as one that never ran.
+ */
 static void engines_cool(void **state)
 {
     (void)state;
@@ -171,7 +175,8 @@ static void engines_cool(void **state)
     CHECK(scenery_heat_create(&heat, &config, &s) == STATUS_OK);
     CHECK(scenery_temps_at(&temps, heat, config.heat.unix_s, arena) == STATUS_OK);
     for (int i = 0; i < 5; i++) k[i] = warmest_k(temps, i, &s.model[i], "bonnet");
-    print_message("bonnets: running %.1f, 3 min %.1f, 1 h %.1f, 1 day %.1f, never %.1f K\n", k[0], k[1], k[2], k[3], k[4]);
+    print_message("bonnets: running %.1f, 3 min %.1f, 1 h %.1f, 1 day %.1f, never %.1f K\n", k[0], k[1], k[2], k[3],
+                  k[4]);
     CHECK(k[1] > k[2] + 1 && k[2] > k[3] + 1 && fabs(k[3] - k[4]) < 1.5 && k[1] > k[4] + 5);
     scenery_heat_destroy(heat);
     scenery_free(&s);
