@@ -70,7 +70,8 @@ Status world_scenery_temps(SceneryTemps **out, const World *world, double unix_s
 /* The same as world_warm for a clear day of the atmosphere's own temperature: what benches and pictures of models stand
  * on. */
 Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m, Pool *pool);
-/* The ground's heat at a time, in the arena; *out NULL where the world is not warm. marks: may be NULL. */
+/* The heat of ground and scenery at a time, in the arena; times in order; *out NULL where the world is not warm. marks:
+ * may be NULL. */
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);
 /* The patches of a snapshot's models. One thread at a time. */
 Status world_need_patches(const World *world, const Snapshot *snapshot);

@@ -504,6 +504,34 @@ static void of_equals_the_lowest_object_is_met(void **state)
     CHECK(low > 10);
 }
 
+/* Seen from above on a grid: what a ray straight down meets of what stands. */
+static void tops_are_what_rays_from_above_meet(void **state)
+{
+    (void)state;
+    enum { side = 90 };
+    static float z_m[side * side];
+    const double cell_m = 2 * wide_m / (side - 1);
+    int          covered = 0;
+    for (int k = 0; k < side * side; k++) z_m[k] = -50;
+    scenery_tracer_tops(z_m, stage.tracer, side, side, -wide_m, -wide_m, cell_m);
+    list_triangles(0);
+    for (int k = 0; k < side * side; k += 7) {
+        const double o[3] = {-wide_m + k % side * cell_m, -wide_m + k / side * cell_m, 1000}, down[3] = {0, 0, -1};
+        double       top_m = -50, inside;
+        bool         doubtful = false;
+        for (int t = 0; t < stage.triangles; t++) {
+            const double range_m = meet(&inside, &stage.triangle[t], o, down);
+            if (stage.triangle[t].object % 31 == 11 && stage.triangle[t].object < 11 + 31 * drivers) continue;
+            doubtful |= fabs(inside) < 1e-7;
+            if (inside >= 0 && range_m < INFINITY) top_m = fmax(top_m, 1000 - range_m);
+        }
+        if (doubtful) continue;
+        CHECK_NEAR((double)z_m[k], top_m, 1e-4);
+        covered += top_m > -50;
+    }
+    CHECK(covered > 200);
+}
+
 static void wrong_numbers_are_refused(void **state)
 {
     (void)state;
@@ -533,6 +561,7 @@ int main(void)
         cmocka_unit_test(skipping_changes_no_bit),
         cmocka_unit_test(a_block_is_the_sum_of_its_rays),
         cmocka_unit_test(of_equals_the_lowest_object_is_met),
+        cmocka_unit_test(tops_are_what_rays_from_above_meet),
         cmocka_unit_test(wrong_numbers_are_refused),
     };
     thread_flush_denormals();

@@ -63,7 +63,7 @@ static Status pose(PosedEntity *out, const SceneryTracer *t, int object, const d
 }
 
 /* A box about an object as it is posed, along east, north and up. */
-static bool box_of(const PosedEntity *e, double low[3], double high[3])
+bool scenery_box(const PosedEntity *e, double low[3], double high[3])
 {
     static const double near_miss_m = 1e-3; /* ample: 20 um */
     if (e->model < 0) return false;
@@ -83,7 +83,7 @@ static bool box_of(const PosedEntity *e, double low[3], double high[3])
 static bool box_that_stands(void *user, int object, double low[3], double high[3])
 {
     const SceneryTracer *t = user;
-    return box_of(&t->posed[object], low, high);
+    return scenery_box(&t->posed[object], low, high);
 }
 
 static Status plant_tree(SceneryTracer *t)
@@ -185,7 +185,7 @@ Status scenery_tracer_materials(SceneryTracer *t, const Materials *materials, co
 
 static bool box_that_drives(void *user, int object, double low[3], double high[3])
 {
-    return box_of(frame_posed(user, object), low, high);
+    return scenery_box(frame_posed(user, object), low, high);
 }
 
 static Status move_objects(SceneryFrame *f, double t_s, Arena *arena)

@@ -23,6 +23,10 @@ size_t         scenery_tracer_bytes(const SceneryTracer *tracer); /* of poses an
 /* Finds the row of every part: before any frame, and again when rows have moved. path: of the table, for the log. */
 Status scenery_tracer_materials(SceneryTracer *tracer, const Materials *materials, const char *path);
 
+/* Raises heights [ny][nx], at x0_m + i cell_m and y0_m + j cell_m, to the highest of what stands above each. */
+void scenery_tracer_tops(float *z_m, const SceneryTracer *tracer, int nx, int ny, double x0_m, double y0_m,
+                         double cell_m);
+
 /* ---- a frame ---------------------------------------------------------------------------------- */
 
 typedef struct SceneryFrame SceneryFrame;

@@ -263,7 +263,10 @@ static void cast(void *user)
     heat_shadow_destroy(s->map);
     s->map = NULL;
     s->status = heat_shadow_create(
-        &s->map, &(ShadowOf){s->elevation, s->cell_m, s->slots, s->d_enu, groves, NULL, NULL, NULL}, s->pool);
+        &s->map,
+        &(ShadowOf){
+            .elevation = s->elevation, .cell_m = s->cell_m, .slots = s->slots, .d_enu = s->d_enu, .plants = groves},
+        s->pool);
     bench_keep(s->map);
 }
 

@@ -61,7 +61,9 @@ static void cast(void *user)
     heat_shadow_destroy(c->map);
     c->map = NULL;
     c->status = heat_shadow_create(
-        &c->map, &(ShadowOf){c->elevation, config_default().heat.shadow_m, c->slots, c->d_enu, NULL, NULL, NULL, NULL},
+        &c->map,
+        &(ShadowOf){
+            .elevation = c->elevation, .cell_m = config_default().heat.shadow_m, .slots = c->slots, .d_enu = c->d_enu},
         c->pool);
     bench_keep(c->map);
 }
