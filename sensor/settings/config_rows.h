@@ -297,7 +297,7 @@ enum { config_paths_size = 4096 };
         "distance between elevation posts; 0: 4 for synthetic terrain, else that of the files") \
     ROW(TEXT, terrain., place, "", 80, "", \
         "latitude and longitude, degrees, and height, m, of synthetic ground that follows from them and the seed alone, " \
-        "as an exercise with ground.invented was placed on: 50.1,8.6,120; empty: led through the exercise") \
+        "as an exercise with ground.planted was placed on: 50.1,8.6,120; empty: led through the exercise") \
     ROW(PATH, terrain., store, "", 1024, \
         "terrain store of `pitviper terrain import`, instead of elevation, cover and orthophoto; empty: none") \
     ROW(PATHS, terrain., elevation, "", config_paths_size, \
