@@ -324,7 +324,7 @@ static Status read_vectors(Import *i)
 
 /* ---- all of it ---------------------------------------------------------------------------------------- */
 
-/* Leaves out poles and masts that carry a power line, whose corners are poles, and trees that the files have twice. */
+/* Leaves out poles and masts that carry a power line, whose corners are poles. */
 static Status leave_twice(Culture *c, CultureReport *report)
 {
     static const double same_m = 1;
