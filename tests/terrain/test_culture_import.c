@@ -329,6 +329,26 @@ static void what_cannot_be_is_counted(void **state)
     culture_free(&c);
 }
 
+/* A hedge that leaves the square and comes back: a plant each 1.2 m within it, counted from the corners between which
+ * it may be seen. */
+static void rows_are_clipped(void **state)
+{
+    (void)state;
+    static const double hedge[][2] = {{15990, 3000}, {16500, 3000}, {16500, 3100}, {15980, 3100}};
+    Culture             c;
+    CultureReport       r;
+    int                 want = 0;
+    begin_file();
+    add_feature("LineString", "[", "]", "\"barrier\":\"hedge\"", hedge, 4);
+    end_file("row.geojson");
+    for (double at_m = 0.6; at_m < 520; at_m += 1.2) want += (at_m < 10) + (at_m > 500);
+    assert_int_equal(open_names(&c, &r, "row.geojson", NULL), STATUS_OK);
+    if (c.trees != want) fail_msg("%d plants, want %d", c.trees, want);
+    CHECK_NEAR(c.tree[0].x_m, 15990.6, 1e-4);
+    for (int k = 0; k < c.trees; k++) CHECK(c.tree[k].x_m <= 16000);
+    culture_free(&c);
+}
+
 static void courtyards_are_counted(void **state)
 {
     (void)state;
@@ -403,6 +423,7 @@ static void names_that_are_no_files(void **state)
                                         "/vsicurl/http://127.0.0.1:9/a.geojson",
                                         "nothing.gpkg",
                                         "PG:dbname=x",
+                                        "/vsizip//vsicurl/http://127.0.0.1:9/a.zip/b.geojson",
                                         "/vsistdin/",
                                         "/vsicurl_streaming/http://127.0.0.1:9/a.zip"};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++)
@@ -613,6 +634,7 @@ int main(void)
         cmocka_unit_test(three_formats_and_systems_are_one),
         cmocka_unit_test(mixed_features),
         cmocka_unit_test(what_cannot_be_is_counted),
+        cmocka_unit_test(rows_are_clipped),
         cmocka_unit_test(courtyards_are_counted),
         cmocka_unit_test(a_table_of_trees),
         cmocka_unit_test(names_that_are_no_files),

@@ -369,14 +369,17 @@ static void culture_lies_on_them(void **state)
     assert_int_equal(culture_index(&c), STATUS_OK);
     culture_lay(&land, &c);
     for (double x = -240; x < 80; x += 7) {
-        CHECK(landscape_surface(&land, x, -196.1) == SURFACE_ROAD && landscape_surface(&land, x, -203.9) == SURFACE_ROAD);
+        CHECK(landscape_surface(&land, x, -196.1) == SURFACE_ROAD &&
+              landscape_surface(&land, x, -203.9) == SURFACE_ROAD);
         if (fabs(x) < 60) continue;
         const SurfaceClass beside = x < 0 ? SURFACE_BUILT : SURFACE_WATER;
         CHECK(landscape_surface(&land, x, -195.9) == beside && landscape_surface(&land, x, -204.1) == beside);
     }
     for (double y = 60; y < 240; y += 7) {
-        CHECK(landscape_surface(&land, 94.1, y) == SURFACE_WATER && landscape_surface(&land, 105.9, y) == SURFACE_WATER);
-        CHECK(landscape_surface(&land, 93.9, y) == SURFACE_GRASS && landscape_surface(&land, 106.1, y) == SURFACE_GRASS);
+        CHECK(landscape_surface(&land, 94.1, y) == SURFACE_WATER &&
+              landscape_surface(&land, 105.9, y) == SURFACE_WATER);
+        CHECK(landscape_surface(&land, 93.9, y) == SURFACE_GRASS &&
+              landscape_surface(&land, 106.1, y) == SURFACE_GRASS);
     }
     CHECK(landscape_surface(&land, -140, 110) == SURFACE_FOREST_BROADLEAF);
     culture_lay(&land, NULL);
