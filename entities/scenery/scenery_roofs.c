@@ -100,7 +100,8 @@ static void slab_face(BuildingWork *w, const double (*node)[3], const int *index
     int    largest = -1;
     double most_m2 = least_m2;
     for (int k = 0; k < count && flat && triangle; k++) memcpy(flat[k], node[index ? index[k] : k], sizeof flat[k]);
-    if (flat && triangle && outline_triangulate(triangle, (const double(*)[2])flat, count))
+    if (holed && (!flat || !triangle)) w->cell->status = STATUS_NO_MEMORY;
+    if (flat && triangle && outline_triangulate(triangle, &w->cell->status, (const double(*)[2])flat, count))
         for (int t = 0; t < count - 2; t++) {
             double p[3][2];
             for (int k = 0; k < 3; k++) memcpy(p[k], flat[triangle[t][k]], sizeof p[k]);
@@ -205,7 +206,8 @@ static void inner_place(double out[2], const BuildingWork *w)
     int(*t)[3] = malloc((size_t)w->n * sizeof *t);
     double best = 0;
     out[0] = w->p[0][0], out[1] = w->p[0][1];
-    if (t && outline_triangulate(t, (const double(*)[2])w->p, w->n))
+    if (!t) w->cell->status = STATUS_NO_MEMORY;
+    if (t && outline_triangulate(t, &w->cell->status, (const double(*)[2])w->p, w->n))
         for (int k = 0; k < w->n - 2; k++) {
             const double corner[3][2] = {{w->p[t[k][0]][0], w->p[t[k][0]][1]},
                                          {w->p[t[k][1]][0], w->p[t[k][1]][1]},
