@@ -316,6 +316,9 @@ static bool is_positive(const Skeleton *s, Status *status, const int *index, int
         const double *p = s->node[index[k]];
         const bool    gable = face < s->n && s->edge[face][2] == 0;
         flat[k][0] = gable ? dot2(s->edge[face], p) : p[0], flat[k][1] = gable ? p[2] : p[1];
+        /* a gable stands over its edge alone */
+        const double *a = s->node[face % s->n], *b = s->node[(face + 1) % s->n];
+        if (gable) ok = flat[k][0] > dot2(s->edge[face], a) - snap_m && flat[k][0] < dot2(s->edge[face], b) + snap_m;
     }
     ok = ok && outline_triangulate(triangle, status, (const double(*)[2])flat, count);
     for (int t = 0; t < count - 2 && ok; t++) {

@@ -98,6 +98,7 @@ static void check_building(const Scenery *s, int model, const Culture *c, const 
                 high_m = fmax(high_m, f.p[k][2]);
             }
         }
+        for (int k = 0; k < 3 && is_part(&f, "chimney"); k++) CHECK(is_inside(p, b->corners, f.p[k]));
         if (!is_part(&f, "wall") || fabs(f.n[2]) > 1e-6 * area || side_m(p, b->corners, middle) > 1e-6) continue;
         v3_add_scaled(out, middle, 1e-4 / v3_length(f.n), f.n);
         CHECK(!is_inside(p, b->corners, out));
