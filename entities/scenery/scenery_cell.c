@@ -123,8 +123,8 @@ void cell_face(CellMesh *cell, int slot, const double (*p)[3], int n)
             flat[k][1] = normal[axis] > 0 ? p[k][y] : p[k][x];
             vertex[k] = cell_vertex(cell, p[k], normal);
         }
-        outline_triangulate(triangle, (const double(*)[2])flat, n);
-        for (int t = 0; t < n - 2; t++)
+        outline_triangulate(triangle, &cell->status, (const double(*)[2])flat, n);
+        for (int t = 0; t < n - 2 && cell->status == STATUS_OK; t++)
             cell_triangle(cell, slot, vertex[triangle[t][0]], vertex[triangle[t][1]], vertex[triangle[t][2]]);
     }
     if (n > 16) free(flat), free(triangle), free(vertex);

@@ -181,6 +181,33 @@ static void every_slope_of_a_hipped_roof_is_as_steep(void **state)
     }
 }
 
+/* Chimneys rise 0.9 m over the ridge that they stand on, and are hot where a house is heated. */
+static void chimneys_stand_on_the_ridge(void **state)
+{
+    (void)state;
+    for (int roof = 0; roof < ROOF_SHAPES; roof++)
+        for (int count = 1; count <= 4; count++) {
+            Building b = with_roof(roof);
+            b.chimneys = (uint8_t)count, b.heated = count != 3;
+            Scenery s = scenery_of(&b, rectangle, 4);
+            int     facets = 0;
+            for (int t = 0; t < s.model[0].triangle_count; t++) {
+                const Facet f = facet(&s, 0, t);
+                if (!is_part(&f, "chimney")) continue;
+                facets++;
+                CHECK(f.part->role == (b.heated ? HEAT_FLUE : HEAT_PASSIVE));
+                for (int k = 0; k < 3; k++) {
+                    CHECK(f.p[k][0] > 10 && f.p[k][0] < 22 && f.p[k][1] > 10 && f.p[k][1] < 18);
+                    if (roof != ROOF_GABLED && roof != ROOF_HIPPED) continue;
+                    CHECK(fabs(f.p[k][1] - 14) < 0.3);
+                    CHECK(fabs(f.p[k][2] - 109 - 0.9) < 1e-5 || f.p[k][2] < 109);
+                }
+            }
+            assert_int_equal(facets, 12 * count);
+            scenery_free(&s);
+        }
+}
+
 /* ---- walls ---------------------------------------------------------------------------------------- */
 
 static void windows_stand_in_rows_and_doors_on_the_floor(void **state)
@@ -430,6 +457,7 @@ int main(void)
         cmocka_unit_test(gables_are_closed_by_triangles),
         cmocka_unit_test(a_hipped_roof_is_the_lowest_of_its_planes),
         cmocka_unit_test(every_slope_of_a_hipped_roof_is_as_steep),
+        cmocka_unit_test(chimneys_stand_on_the_ridge),
         cmocka_unit_test(windows_stand_in_rows_and_doors_on_the_floor),
         cmocka_unit_test(doors_open_on_drives),
         cmocka_unit_test(damage_goes_on_by_state),

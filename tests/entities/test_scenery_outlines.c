@@ -98,6 +98,7 @@ static void check_building(const Scenery *s, int model, const Culture *c, const 
                 high_m = fmax(high_m, f.p[k][2]);
             }
         }
+        for (int k = 0; k < 3 && is_part(&f, "chimney"); k++) CHECK(is_inside(p, b->corners, f.p[k]));
         if (!is_part(&f, "wall") || fabs(f.n[2]) > 1e-6 * area || side_m(p, b->corners, middle) > 1e-6) continue;
         v3_add_scaled(out, middle, 1e-4 / v3_length(f.n), f.n);
         CHECK(!is_inside(p, b->corners, out));
@@ -230,6 +231,7 @@ static void absurd_records_do_no_harm(void **state)
 static void triangles_cover_an_outline(void **state)
 {
     (void)state;
+    Status status = STATUS_OK;
     for (uint64_t seed = 0; seed < 2000; seed++) {
         double    p[64][2], sum = 0;
         int       t[64][3];
@@ -237,7 +239,7 @@ static void triangles_cover_an_outline(void **state)
         const int n = random_outline(p, seed);
         add(&c, &house, (const double(*)[2])p, n); /* turned, without repeated corners */
         const double(*q)[2] = (const double(*)[2])c.corner_m;
-        CHECK(outline_triangulate(t, q, c.building[0].corners));
+        CHECK(outline_triangulate(t, &status, q, c.building[0].corners) && status == STATUS_OK);
         for (int k = 0; k < c.building[0].corners - 2; k++) {
             const double corner[3][2] = {
                 {q[t[k][0]][0], q[t[k][0]][1]}, {q[t[k][1]][0], q[t[k][1]][1]}, {q[t[k][2]][0], q[t[k][2]][1]}};
@@ -250,7 +252,7 @@ static void triangles_cover_an_outline(void **state)
     /* one that crosses itself: still n - 2 triangles, but said */
     static const double bow[4][2] = {{0, 0}, {2, 2}, {2, 0}, {0, 2}};
     int                 t[2][3];
-    CHECK(!outline_triangulate(t, bow, 4));
+    CHECK(!outline_triangulate(t, &status, bow, 4) && status == STATUS_OK);
 }
 
 /* Every node is as far from the eaves of its face as its time says. */
