@@ -6,7 +6,8 @@
 #include <stdlib.h>
 
 enum { sectors = sky_horizon_sectors, tile_side = 32, tile_cells = tile_side * tile_side, most_heights = 16 << 20 };
-static const double reach_m = 50, finest_m = 2, height_step_m = 0.25;
+static const double reach_m = 80, finest_m = 2, height_step_m = 0.25;
+static const double before_cells = 1.2;
 static const float  no_top_m = -1e9f;
 
 /* tan h / (1 + tan h) of 255; 0.25 m. */
@@ -103,11 +104,11 @@ static void fill_cell(Cell *out, const Making *m, int i, int j)
         double sum = 0, height_m = 0;
         for (int k = 0; k < 2; k++) {
             const double azimuth = 2 * pi_rad * (s + 0.25 + 0.5 * k - 0.5) / sectors;
-            double       tangent = 0;
-            for (double way = 1; way * cell_m <= reach_m; way += way < 4 ? 1 : 0.25 * way) {
-                const float top_m =
-                    top_at(m, at[0] + (int)lround(way * sin(azimuth)), at[1] + (int)lround(way * cos(azimuth)));
-                const double rise_m = (double)(top_m - out->ground_m), here = rise_m / ((way - 0.5) * cell_m);
+            double       tangent = 0, before = 0;
+            for (double way = 1; way * cell_m <= reach_m; before = way, way += way < 4 ? 1 : 0.25 * way) {
+                const int    x = at[0] + (int)lround(way * sin(azimuth)), y = at[1] + (int)lround(way * cos(azimuth));
+                const double rise_m = (double)(top_at(m, x, y) - out->ground_m);
+                const double here = rise_m / (0.5 * (before + way) * cell_m); /* its side lies between the two */
                 if (!(here > tangent)) continue;
                 tangent = here;
                 height_m = fmax(height_m, rise_m);
@@ -246,15 +247,18 @@ static F32x8 above(F32x8 tangent, F32x8 aside, F32x8 up)
     return f32x8_max(aside * (left - tangent * cosine2) + up * cosine2, f32x8_set(0));
 }
 
-/* Of one cell at this height; 1: none. */
-static float share_of(const Cell *cell, float z_m, F32x8 aside, F32x8 up, float open)
+/* Of one cell at this height; 1: none. before_m: the cell is that far before the place, along the normal: what makes
+ * its horizon is as much farther from the place. */
+static float share_of(const Cell *cell, float z_m, F32x8 aside, F32x8 up, float open, double before_m)
 {
     if (!cell || !(open > 1e-4f)) return 1;
     const F32x8 code = f32x8_of_ints(i32x8_of_bytes(cell->slope)) * f32x8_set(1.0 / 255);
     const F32x8 high = f32x8_of_ints(i32x8_of_bytes(cell->height)) * f32x8_set(height_step_m);
     const F32x8 over = _mm256_set1_ps(z_m - cell->ground_m > 0 ? z_m - cell->ground_m : 0);
-    const F32x8 tangent =
-        code / f32x8_max(f32x8_set(1) - code, f32x8_set(1e-3)) * f32x8_clamp(f32x8_set(1) - over / high, 0, 1);
+    const F32x8 near = code / f32x8_max(f32x8_set(1) - code, f32x8_set(1e-3));
+    const F32x8 more = f32x8_fma(near * f32x8_set(before_m), f32x8_max(aside, f32x8_set(0)) / high, f32x8_set(1));
+    const F32x8 tangent = near / more * f32x8_clamp(f32x8_set(1) - over / high, 0, 1);
+
     const float share = sum8(above(tangent, aside, up)) / open;
     return share < 1 ? share : 1;
 }
@@ -264,8 +268,8 @@ static float share_at(const SkyHorizons *h, double x_m, double y_m, float z_m, c
 {
     static const float sine[8] = {0, 0.70710678f, 1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f};
     static const float cosine[8] = {1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f, 0, 0.70710678f};
-    const double       x = (x_m - h->x0_m) / h->cell_m + 1.2 * (double)n[0],
-                 y = (y_m - h->y0_m) / h->cell_m + 1.2 * (double)n[1];
+    const double       x = (x_m - h->x0_m) / h->cell_m + before_cells * (double)n[0],
+                 y = (y_m - h->y0_m) / h->cell_m + before_cells * (double)n[1];
     if (!(x >= 0 && y >= 0 && x < h->tiles_x * tile_side && y < h->tiles_y * tile_side)) return 1;
     const int   i = (int)x, j = (int)y;
     const Cell *cell[4] = {cell_at(h, i, j), cell_at(h, i + 1, j), cell_at(h, i, j + 1), cell_at(h, i + 1, j + 1)};
@@ -275,7 +279,7 @@ static float share_at(const SkyHorizons *h, double x_m, double y_m, float z_m, c
     const float open = sum8(above(f32x8_set(0), aside, up)), u = (float)(x - i), v = (float)(y - j);
     const float weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
     float       share = 0;
-    for (int k = 0; k < 4; k++) share += weight[k] * share_of(cell[k], z_m, aside, up, open);
+    for (int k = 0; k < 4; k++) share += weight[k] * share_of(cell[k], z_m, aside, up, open, before_cells * h->cell_m);
     return share;
 }
 

@@ -6,10 +6,12 @@
  * buildings fill, which shine as a mean wall does under the sun and sky of the moment: without shadows, lit by its
  * share of azimuths. Ground below the horizon stays as it is in the open. Cost: four cells a hit.
  *
- * Error: sectors and cells are steps; the horizon of a cell is that of its middle, so that within a cell (2 m, more
- * where the grid would be larger than its memory) of a wall it is that of a place somewhat farther. Of a long wall,
- * from a quarter of its height away on: within 0.04 of the open sky's light on level ground, 0.06 on a wall that faces
- * it (tests/render/test_sky_horizon.c). A neighbour's own colour, sun and shadow are not in it. */
+ * Error: sectors and cells are steps; the side of a building is known to half a cell (2 m, more where the grid would be
+ * larger than its memory), so that light is least certain close to it. Beside a wall without end, from a third of its
+ * height to three heights away: within 0.06 of the open sky's light on level ground, 0.15 on a wall that faces it, 0.19
+ * on its upper parts (tests/render/test_sky_horizon.c); farther than 80 m nothing hides. A neighbour's own colour, sun
+ * and shadow are not in it. Over a street of houses the mean is 0.3 % off that of hemisphere sampling, where tilt alone
+ * is 2.8 % too bright. */
 #ifndef RENDER_LIGHT_SKY_HORIZON_H
 #define RENDER_LIGHT_SKY_HORIZON_H
 
