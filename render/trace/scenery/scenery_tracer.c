@@ -151,6 +151,11 @@ void scenery_tracer_destroy(SceneryTracer *t)
 const Scenery *scenery_tracer_of(const SceneryTracer *t) { return t->scenery; }
 size_t         scenery_tracer_bytes(const SceneryTracer *t) { return arena_bytes(t->arena); }
 
+bool scenery_tracer_box(const SceneryTracer *t, int object, double low[3], double high[3])
+{
+    return scenery_box(&t->posed[object], low, high);
+}
+
 Status scenery_tracer_materials(SceneryTracer *t, const Materials *materials, const char *path)
 {
     const Scenery *s = t->scenery;
@@ -226,6 +231,18 @@ Status scenery_frame_create(SceneryFrame **out, const SceneryTracer *t, const Sc
     const Status status = t->moving > 0 ? move_objects(f, of->t_s, arena) : STATUS_OK;
     if (status == STATUS_OK) *out = f;
     return status;
+}
+
+uint64_t scenery_frame_hash(const SceneryFrame *f)
+{
+    uint64_t hash = f ? (uint64_t)(uintptr_t)f->of : 0;
+    for (int k = 0; f && f->tree && k < f->of->scenery->movers; k++) {
+        uint64_t bits[3 + 9];
+        memcpy(bits, f->moved[k].p_enu, sizeof f->moved[k].p_enu);
+        memcpy(bits + 3, f->moved[k].r_enu_from_body, sizeof f->moved[k].r_enu_from_body);
+        for (int n = 0; n < 12; n++) hash = (hash ^ bits[n]) * UINT64_C(0x9E3779B97F4A7C15), hash ^= hash >> 29;
+    }
+    return hash;
 }
 
 const Scenery            *scenery_frame_of(const SceneryFrame *f) { return f->of->scenery; }
