@@ -65,13 +65,15 @@ typedef struct Want {
 /* Of the warmest place: in the sun of noon that is where it falls square, at 2 m/s. */
 static const Want want[] = {
     {"car", "bonnet", idles, 3, 70, "bonnets of idling cars: 310 .. 350 K (thermographs of parked and running cars)"},
-    {"car", "exhaust", idles, 80, 350, "pipes and silencers behind the catalyst: 370 .. 620 K (Heywood, table 12: by load)"},
+    {"car", "exhaust", idles, 80, 350,
+     "pipes and silencers behind the catalyst: 370 .. 620 K (Heywood, table 12: by load)"},
     {"car", "exhaust", drives, 80, 350, "the same"},
     {"generator", "exhaust", idles, 80, 350, "the same of a diesel's stack"},
     {"tractor", "bonnet", idles, 3, 80, "as the car's, closer to the engine"},
     {"tractor", "exhaust", idles, 80, 350, "a stack without a shield"},
     {"cow", "body", lives, 2, 40, "dark coats in the sun: up to 40 K above the air at low wind (Stewart 1953)"},
-    {"cow", "udder", lives, 8, 20, "udders and muzzles: 303 .. 309 K in barns of 293 K: 10 .. 16 K above the air (thermographs)"},
+    {"cow", "udder", lives, 8, 20,
+     "udders and muzzles: 303 .. 309 K in barns of 293 K: 10 .. 16 K above the air (thermographs)"},
     {"sheep", "fleece", lives, 2, 47, "tips of fleece: up to 47 K above the air in the sun (Macfarlane et al. 1958)"},
     {"deer", "head", lives, 2, 40, "as coats"},
     {"campfire", "embers", burns, 700, 1000, "glowing char: 700 .. 1000 K (Drysdale)"},
