@@ -28,6 +28,7 @@ typedef enum SceneryClass {
     CLUTTER_ROCK, /* and dry bare slopes */
     CLUTTER_CRATES,
     CLUTTER_TENT,
+    CLUTTER_BALE,
     CLUTTER_CLASSES
 } SceneryClass;
 const char *scenery_class_name(SceneryClass of); /* "car" ... */

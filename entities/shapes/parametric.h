@@ -45,5 +45,8 @@ Status parametric_rotorcraft(Model *out, const char *name, double sag_m);
 Status parametric_vessel(Model *out, const char *name, double sag_m);
 Status parametric_munition(Model *out, const char *name, double sag_m);
 Status parametric_structure(Model *out, const char *name, double sag_m);
+Status parametric_civil(Model *out, const char *name, double sag_m);
+Status parametric_countryside(Model *out, const char *name, double sag_m);
+Status parametric_rock(Model *out, const char *name, double sag_m);
 
 #endif

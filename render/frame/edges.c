@@ -19,6 +19,8 @@ static const double about_px = 3; /* plants so near a target's box hide parts of
 static const double thin_px = 6;  /* a shadow of more rows than this is met by samples, and its edges are found */
 static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, with the sun at 45 degrees */
 static const double step_part = 0.05, step_ground = 0.5; /* of the range */
+static const double scenery_px_m =
+    0.5;                            /* wider pixels show houses as a texture: like plants', its borders are no edges */
 static const double kinds_bent = 1; /* of the change of range from pixel to pixel: real ground is not planar */
 
 static void mark_box(Job *job, const double box[4], RefineFlag flag)
@@ -212,24 +214,27 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
 {
     const Picture *p = job->picture;
     const size_t   a = pixel_index(job, xa, ya), b = pixel_index(job, xb, yb);
-    const bool     part = p->entity[a] || p->entity[b], plants = p->instance && (p->instance[a] || p->instance[b]);
+    const bool     part = p->part[a] || p->part[b], plants = !part && p->instance && (p->instance[a] || p->instance[b]);
+    const bool     entity = p->entity[a] || p->entity[b];
+    const double   near_m = fmin(p->range_m[a], p->range_m[b]), px_m = near_m / job->request->view.focal_px;
+    const unsigned edge = entity ? refine_all
+                          : part ? refine_scenery
+                                 : refine_step; /* scenery is what targets stand before */
     const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
     if (sky_a && sky_b) return 0;
-    if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return refine_all;
+    if (part && !entity && !sky_a && !sky_b && px_m > scenery_px_m) return 0;
+    if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return edge;
+    if (part && p->instance && p->instance[a] != p->instance[b]) return edge;
     if (sky_a != sky_b) return refine_step;
     if (plants) return leaves ? refine_plants : 0; /* most neighbours differ in light or kind */
     const bool   other = p->material[a] != p->material[b];
     const double cosine =
         p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] + p->normal[2][a] * p->normal[2][b];
-    const double    near_m = fmin(p->range_m[a], p->range_m[b]);
     const bool      kinds = other && !part; /* a crest between two ground classes is worth refining when it is low */
-    const double    step_m = part    ? step_part * near_m
-                             : kinds ? near_m / job->request->view.focal_px
-                                     : step_ground * near_m;
+    const double    step_m = part ? step_part * near_m : kinds ? px_m : step_ground * near_m;
     const PixelPair pair = {a, b, xa, ya, xb, yb};
-    if (!(cosine > sharp_cosine) || steps_in_depth(job, &pair, step_m, kinds ? kinds_bent : 0, kinds))
-        return part ? refine_all : refine_step;
-    if (part && other) return refine_all;
+    if (!(cosine > sharp_cosine) || steps_in_depth(job, &pair, step_m, kinds ? kinds_bent : 0, kinds)) return edge;
+    if (part && other) return edge;
     return (other ? refine_ground : 0) | (job->sun[a] != job->sun[b] ? refine_sun : 0);
 }
 
@@ -257,8 +262,8 @@ static void find_pairs(uint32_t *restrict pair, const Job *job, size_t a, size_t
         const uint32_t plain = (uint32_t)((other | else_other) == 0) & (uint32_t)(turn > cosine) &
                                (uint32_t)(far_m - near_m <= step * near_m);
         const uint32_t sky = (uint32_t) !(near_m < INFINITY);
-        const uint32_t leaves =
-            plants & (uint32_t)(other == 0) & (uint32_t)(far_m < INFINITY) & (uint32_t)((plant[k] | plant[l]) != 0);
+        const uint32_t leaves = plants & (uint32_t)(other == 0) & (uint32_t)(far_m < INFINITY) &
+                                (uint32_t)((plant[k] | plant[l]) != 0) & (uint32_t)(part[k] == 0);
         pair[i] = plain | sky ? pair_alike : leaves ? pair_of_plants : pair_may_differ;
     }
 }
@@ -328,7 +333,7 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, const Tile *tile
             const bool       smoothed = leafy && !(flag & refine_leaves);
             if (smoothed) flag &= ~(unsigned)(refine_sun | refine_ground);
             if (job->request->samples > 1)
-                flag &= ~(unsigned)(refine_step | refine_plants | refine_ground); /* all flags set */
+                flag &= ~(unsigned)(refine_step | refine_scenery | refine_plants | refine_ground); /* all flags set */
             ask[at] = grounds && !(flag & refine_all) && !smoothed &&
                       job->picture->cover[pixel_index(job, x, y)] != SURFACE_NONE;
             any |= ask[at];

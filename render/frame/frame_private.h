@@ -57,7 +57,7 @@ void pixels_box(double box_px[4], const PixelBlock *block);
 
 /* Areas in steps of 1 / SumRules.steps_per_px of a pixel, powers in steps of the rules' quanta. */
 typedef struct TargetCount {
-    int64_t visible, amodal, hidden_ground, hidden_entity, hidden_plants;
+    int64_t visible, amodal, hidden_ground, hidden_entity, hidden_plants, hidden_scenery;
     int64_t radiance[picture_plane_count];
     int64_t veiled[BAND_COUNT]; /* area times the share of its light that smoke absorbs */
     int     box[4], amodal_box[4];
@@ -105,6 +105,24 @@ typedef struct TargetSums {
     double       cosine3[hits_capacity]; /* of the block's pixels */
 } TargetSums;
 
+/* ---- sums over scenery: scenery_sums.c ------------------------------------------------------- */
+
+/* What a worker's samples showed of an object: in integers and extremes, independent of the order of threads. */
+typedef struct ScenerySum {
+    uint32_t instance; /* of Hits; 0: a free slot */
+    int64_t  steps;    /* area, in steps; what small targets cover is left out */
+    int      box[4];
+    double   nearest_m;
+    float    hottest_k; /* -INFINITY: not known */
+} ScenerySum;
+
+/* Every object that a worker met: a growing hash table. */
+typedef struct ScenerySums {
+    ScenerySum *slot; /* [capacity] */
+    size_t      capacity, used;
+    bool        lost; /* out of memory: the sums are incomplete */
+} ScenerySums;
+
 Status target_sums_create(TargetSums *out, int entities, int profile_bins, Arena *arena);
 /* Steps and quanta for a request. */
 void sum_rules_choose(SumRules *rules, const RenderRequest *request, const RadarConfig *radar);
@@ -119,6 +137,14 @@ typedef struct SharedBlock {
     double            share;
 } SharedBlock;
 
+/* A sample's area in steps, which divide by every share, and the part of it that no small target covers. */
+int64_t target_sums_steps(int64_t *seen, const SumRules *rules, const SharedBlock *of, size_t px);
+/* The block's scenery: areas, of samples as they were shot, and temperatures, once they are known. */
+void scenery_sums_area(ScenerySums *sums, const SumRules *rules, const SharedBlock *of);
+void scenery_sums_heat(ScenerySums *sums, const SumRules *rules, const Samples *s);
+/* All workers' clutter that is seen into the picture, by object. STATUS_NO_MEMORY. */
+Status scenery_sums_gather(Picture *picture, const SumRules *rules, const ScenerySums *const *sums, int workers,
+                           const Scenery *scenery, Arena *arena);
 /* The visible and amodal area of the listed entities: all that the block can show. */
 void target_sums_areas(TargetSums *sums, const SumRules *rules, const SharedBlock *of, const int *list, int listed,
                        VisibilityCounters *counters);
@@ -163,6 +189,7 @@ typedef struct Worker {
     Samples        samples;
     PixelBlock     block; /* base and edges, error estimate */
     TargetSums     sums;
+    ScenerySums    scenery;
     RenderCounters counters; /* without visibility, which is in shader.counters */
     int           *list;     /* [snapshot count]: entities */
     int           *outline;  /* [snapshot count]: those whose areas are sampled again */
@@ -262,12 +289,13 @@ void sampling_fill_tile(void *job, int worker, int task);
 /* Refinement that a pixel needs. What only the shadow-sensitive bands need must not affect the others, whose bits
  * would then depend on the requested bands; and bare ground must stay cheap. */
 typedef enum RefineFlag {
-    refine_all = 1,     /* edge_samples a side, every band */
-    refine_step = 2,    /* 2 a side, each split by ground class; every band: a crest of the ground, the horizon */
-    refine_sun = 4,     /* edge_samples a side, optical and MWIR: the edge of a shadow */
-    refine_ground = 8,  /* the plane of the existing hit, split by ground class, no ray; not the radar */
-    refine_plants = 16, /* leaf_samples a side, which join the first one; every band: plants about a target */
-    refine_leaves = 32, /* a mark: plants are refined here */
+    refine_all = 1,      /* edge_samples a side, every band */
+    refine_step = 2,     /* 2 a side, each split by ground class; every band: a crest of the ground, the horizon */
+    refine_sun = 4,      /* edge_samples a side, optical and MWIR: the edge of a shadow */
+    refine_ground = 8,   /* the plane of the existing hit, split by ground class, no ray; not the radar */
+    refine_plants = 16,  /* leaf_samples a side, which join the first one; every band: plants about a target */
+    refine_leaves = 32,  /* a mark: plants are refined here */
+    refine_scenery = 64, /* 2 a side, which join the first one; every band: borders of scenery */
 } RefineFlag;
 
 /* Marks what is always refined: bounding boxes of medium-sized targets, and the ground where a target's shadow
@@ -390,7 +418,7 @@ struct TargetGrid {
         *before;            /* the same of what hides the target, a pixel that shows some of it */
     TargetGridTruth *truth; /* [pixels]; NULL: not needed */
     /* over the target, px within the image */
-    double visible, amodal, hidden_ground, hidden_entity, hidden_plants;
+    double visible, amodal, hidden_ground, hidden_entity, hidden_plants, hidden_scenery;
     double veiled[BAND_COUNT];          /* area x the share that smoke absorbs */
     double square[picture_plane_count]; /* area x radiance^2 */
     float *cell[picture_plane_count];   /* radiance of each; NULL: neither needed for the budget nor for a detector */

@@ -24,8 +24,8 @@ static bool find_leaves(uint8_t leaf[halo_side][halo_side], const Job *job, cons
     const int      x0 = tile->x0 > 2 ? tile->x0 - 2 : 0, x1 = tile->x1 + 2 < p->width ? tile->x1 + 2 : p->width;
     for (int y = tile->y0 > 2 ? tile->y0 - 2 : 0; y < tile->y1 + 2 && y < p->height; y++) {
         uint8_t        *row = &plant[y - tile->y0 + 2][x0 - tile->x0 + 2];
-        const uint32_t *instance = p->instance + pixel_index(job, x0, y), *entity = p->entity + pixel_index(job, x0, y);
-        for (int k = 0; k < x1 - x0; k++) any |= row[k] = instance[k] && !entity[k]; /* picture_shows_plant */
+        const uint32_t *instance = p->instance + pixel_index(job, x0, y), *part = p->part + pixel_index(job, x0, y);
+        for (int k = 0; k < x1 - x0; k++) any |= row[k] = instance[k] && !part[k]; /* picture_shows_plant */
     }
     for (int j = 0; any && j < halo_side; j++)
         for (int i = 0; i < halo_side; i++) {

@@ -212,6 +212,7 @@ void block_add(Worker *w, const Job *job, double share)
             if (value) target_sums_radiance(&w->sums, &job->rules, &s->hits, &w->block, share, value, plane);
         }
     }
+    if (job->picture->target && job->scene.world->scenery && share > 0) scenery_sums_heat(&w->scenery, &job->rules, s);
     if (!s->radar || job->request->profile_bins == 0) return;
     /* samples behind which a small target lies count with the share of their pixel that it leaves uncovered */
     for (int i = 0; i < s->hits.count; i++) {
@@ -227,6 +228,7 @@ void block_add_areas(Worker *w, const Job *job, double share, const int *list, i
 {
     const SharedBlock of = {&w->samples, &w->block, share};
     target_sums_areas(&w->sums, &job->rules, &of, list, listed, &w->shader.counters);
+    if (job->scene.world->scenery) scenery_sums_area(&w->scenery, &job->rules, &of);
 }
 
 void block_write(Worker *w, const Job *job, double share)

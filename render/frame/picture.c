@@ -86,6 +86,7 @@ void render_counters_add(RenderCounters *sum, const RenderCounters *more)
     to->rays_sun_ground += from->rays_sun_ground;
     to->rays_sun_parts += from->rays_sun_parts;
     to->rays_plants += from->rays_plants;
+    to->rays_scenery += from->rays_scenery, to->rays_sun_scenery += from->rays_sun_scenery;
     to->rays_sun_plants += from->rays_sun_plants;
     to->hits_by_table += from->hits_by_table;
     to->rays_sun_for_heat += from->rays_sun_for_heat;

@@ -101,12 +101,22 @@ typedef struct TargetPixels {
     int    box[4], amodal_box[4]; /* first column, first row, last column + 1, last row + 1; empty: all 0 */
     bool   projected;             /* in front of the eye and its bounding sphere meets the image */
     double projected_box[4];      /* of all of it, px, not clipped to the image; where `projected` */
-    double occluded_ground;       /* pixels hidden by the ground, and by other entities */
+    double occluded_ground;       /* pixels hidden by the ground, by other entities ... */
     double occluded_entity;
     double occluded_plants;
+    double occluded_scenery;
     double veiled[BAND_COUNT]; /* share of its light that smoke and dust take, mean over what is visible, 0 .. 1 */
     int    occluder;           /* snapshot index of the entity that hides most; -1 */
 } TargetPixels;
+
+/* Clutter (entities/scenery) that samples of this view show, what small targets cover left out. */
+typedef struct SceneryPixels {
+    int    object;    /* of Scenery.object */
+    double visible;   /* px, parts of pixels too */
+    int    box[4];    /* as TargetPixels.box */
+    double range_m;   /* of its nearest sample */
+    double hottest_k; /* of its samples; NaN: not known */
+} SceneryPixels;
 
 /* Smaller than this one way, and than the other the other way, a target is sampled on its own grid. */
 enum { small_target_px = 16, small_target_long_px = 4 * small_target_px };
@@ -159,16 +169,19 @@ typedef struct Picture {
     double   *profile;          /* [profile_bins][radar_bounces], relative power */
     float    *range_m;          /* +inf: sky */
     uint32_t *entity;           /* snapshot index + 1; 0: none */
-    uint32_t *part, *material;  /* + 1; 0: none */
-    uint32_t *instance;         /* plant: 1 + ForestHit.plant; low plants: forest_low_bit and a number; 0:
-                                 * none. NULL where the world has no plants */
+    uint32_t *part, *material;  /* + 1; 0: none. part: of entities and scenery */
+    uint32_t *instance;         /* plant: 1 + ForestHit.plant; low plants: forest_low_bit and a number; scenery, where
+                                 * there is a part and no entity: 1 + its number of Scenery.object; 0: none. NULL where
+                                 * the world has neither */
     uint8_t       *cover;       /* SurfaceClass of the ground that is seen, 0: none is */
     float         *temp_k;      /* NaN: sky */
     float         *normal[3];   /* ENU of the terrain origin */
     float         *covered;     /* share of the pixel that small targets cover; NULL: there are none */
     TargetPixels  *target;      /* [snapshot count]; NULL without truth */
-    SmallTargets   small;       /* none: not requested */
-    ErrorBudget   *budget;      /* NULL: not requested */
+    SceneryPixels *scenery;     /* [scenery_count]: clutter that is seen, by object; with truth alone */
+    int            scenery_count;
+    SmallTargets   small;  /* none: not requested */
+    ErrorBudget   *budget; /* NULL: not requested */
     RenderCounters counters;
     RenderTimes    times;
 } Picture;
@@ -205,10 +218,10 @@ static inline size_t picture_index(const Picture *picture, int x, int y)
     return (size_t)y * (size_t)picture->width + (size_t)x;
 }
 
-/* Whether a pixel shows a plant. */
+/* Whether a pixel shows a plant: entities and scenery have parts. */
 static inline bool picture_shows_plant(const Picture *picture, size_t px)
 {
-    return picture->instance && picture->instance[px] && !picture->entity[px];
+    return picture->instance && picture->instance[px] && !picture->part[px];
 }
 
 /* Mean squared difference of a pixel to its neighbours, left, right, above and below. */

@@ -137,7 +137,7 @@ static void put_values(Picture *picture, const PlaneRow *row, void *values)
     memcpy((char *)picture + row->at, &values, sizeof values);
 }
 
-Status planes_create(Picture *picture, const RenderRequest *request, int entities, bool plants, Arena *arena)
+Status planes_create(Picture *picture, const RenderRequest *request, int entities, bool instances, Arena *arena)
 {
     static const size_t octets[] = {
         [PLANE_F32] = sizeof(float), [PLANE_U32] = sizeof(uint32_t), [PLANE_F64] = sizeof(double), [PLANE_U8] = 1};
@@ -151,7 +151,7 @@ Status planes_create(Picture *picture, const RenderRequest *request, int entitie
         const PlaneRow *row = &plane_rows[k];
         const size_t    count = row->kind == PLANE_PROFILE ? bins * radar_bounces : px;
         if (row->make || !plane_of_bands(row, request->bands, request->optical) ||
-            (row->kind == PLANE_TRUTH && !truth) || (row->plants == PLANTS_MAKE && !plants) || count == 0)
+            (row->kind == PLANE_TRUTH && !truth) || (row->plants == PLANTS_MAKE && !instances) || count == 0)
             continue;
         /* a profile is summed into; every pixel of the other planes is written before it is read */
         void *values = row->kind == PLANE_PROFILE ? arena_alloc(arena, count, octets[row->type])

@@ -52,10 +52,10 @@ const void *plane_values(const PlaneRow *row, const Picture *picture); /* NULL: 
 /* Whether a request has the bands, or colours, that it is of. */
 bool plane_of_bands(const PlaneRow *row, unsigned bands, OpticalChannels optical);
 
-/* Planes for a request, all 0; truth planes where truth is requested and where edges are looked for. plants: the world
- * has some.
+/* Planes for a request, all 0; truth planes where truth is requested and where edges are looked for. instances:
+ * the world has plants or scenery.
  * STATUS_NO_MEMORY: of the arena. */
-Status planes_create(Picture *out, const RenderRequest *request, int entities, bool plants, Arena *arena);
+Status planes_create(Picture *out, const RenderRequest *request, int entities, bool instances, Arena *arena);
 /* Removes from the picture the planes that only the search for edges needed. */
 void planes_forget_truth(Picture *picture);
 

@@ -41,6 +41,11 @@ static void restore_first(Worker *w, const Job *job)
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
         s->hits.entity[p] = picture->entity[px];
         s->hits.instance[p] = picture->instance ? picture->instance[px] : 0;
+        s->hits.kind[p] = picture->entity[px]               ? hit_part
+                          : picture->part[px]               ? hit_scenery
+                          : s->hits.instance[p]             ? hit_plant
+                          : picture->range_m[px] < INFINITY ? hit_ground
+                                                            : hit_sky;
         s->hits.range_m[p] = picture->range_m[px] * (1 - 1e-6); /* a float's: no farther than it was */
     }
 }
@@ -137,8 +142,8 @@ static void refine_block(Worker *w, const Job *job, const Refinement *how, int l
     Samples     *s = &w->samples;
     const bool   areas = job->picture->target && !(how->has & refine_sun), ground = how->has & refine_ground;
     const bool   sums = job->picture->target || job->picture->profile, remembered = planes_remember(job);
-    const double share =
-        how->has & refine_plants ? (double)(how->n * how->n) / (1 + how->n * how->n) : 1; /* of them in all */
+    const double share = how->has & (refine_plants | refine_scenery) ? (double)(how->n * how->n) / (1 + how->n * how->n)
+                                                                     : 1; /* of them in all */
     if (sums && remembered && !ground) take_back(w, job, how->bands, share);
     block->n = how->n;
     if (ground) {
@@ -219,13 +224,15 @@ void refine_tile(void *user, int worker, int task)
     unsigned       any = 0;
     const bool     bare = job->request->sampling > SAMPLING_ALL; /* borders of ground are not refined */
 
+    const unsigned   whole = refine_all | refine_step | refine_scenery;
     const Refinement ways[] = {
         {refine_all, 0, all, edge},
         {refine_step, refine_all, all, 2},
-        {refine_plants, refine_all | refine_step, all, leaf_samples(job->request)},
-        {refine_sun, refine_all | refine_step | refine_plants, sunlit, edge},
-        {refine_ground, refine_all | refine_step | refine_plants | refine_sun, no_radar, 1},
-        {refine_ground | refine_sun, refine_all | refine_step | refine_plants, lwir, 1},
+        {refine_scenery, refine_all | refine_step, all, 2},
+        {refine_plants, whole, all, leaf_samples(job->request)},
+        {refine_sun, whole | refine_plants, sunlit, edge},
+        {refine_ground, whole | refine_plants | refine_sun, no_radar, 1},
+        {refine_ground | refine_sun, whole | refine_plants, lwir, 1},
     };
     uint8_t flags_of[hits_capacity];
     if (!may_refine(job, &tile)) return;
@@ -247,7 +254,9 @@ void refine_tile(void *user, int worker, int task)
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
         const Refinement *how = &ways[k];
         if ((any & how->has) != how->has || how->bands == 0) continue;
-        double *law = job->law && !(how->has & (refine_step | refine_plants | refine_ground)) ? job->law[task] : NULL;
+        double *law = job->law && !(how->has & (refine_step | refine_scenery | refine_plants | refine_ground))
+                          ? job->law[task]
+                          : NULL;
         w->block.pixels = w->block.columns = 0;
         for (int y = tile.y0; y < tile.y1; y++)
             for (int x = tile.x0; x < tile.x1; x++) {
@@ -274,7 +283,7 @@ unsigned planes_to_resample(const Job *job, size_t px)
     for (int k = 0; k < picture_plane_count; k++) {
         const bool sunlit = picture_band(k) == BAND_OPTICAL || picture_band(k) == BAND_MWIR;
         if (picture_plane(job->picture, k) &&
-            !(flags & refine_sun && !(flags & (refine_step | refine_plants)) && sunlit))
+            !(flags & refine_sun && !(flags & (refine_step | refine_scenery | refine_plants)) && sunlit))
             planes |= 1u << k;
     }
     return planes;

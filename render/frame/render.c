@@ -123,7 +123,8 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
         memcpy(request->record->channel, job->channel, sizeof job->channel);
     }
 
-    Status status = planes_create(job->picture, request, scene->snapshot->count, world->forest != NULL, arena);
+    Status status =
+        planes_create(job->picture, request, scene->snapshot->count, world->forest || world->scenery, arena);
     if (status == STATUS_OK && job->picture->optical[1]) optical_white(job->picture->white_w_m2_sr, scene->air);
     if (status == STATUS_OK)
         status = shade_scene_create(scene, request, render_air_bands(request->bands, request->optical), pool, arena);
@@ -143,10 +144,12 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
 /* Sums over workers and target grids, into the picture. */
 static Status gather_sums(Job *job, int workers, Arena *arena)
 {
-    Picture           *picture = job->picture;
-    const TargetSums **sums = arena_alloc(arena, (size_t)workers, sizeof *sums);
-    if (!sums) return STATUS_NO_MEMORY;
+    Picture            *picture = job->picture;
+    const TargetSums  **sums = arena_alloc(arena, (size_t)workers, sizeof *sums);
+    const ScenerySums **scenery = arena_alloc(arena, (size_t)workers, sizeof *scenery);
+    if (!sums || !scenery) return STATUS_NO_MEMORY;
     for (int k = 0; k < workers; k++) {
+        scenery[k] = &job->worker[k]->scenery;
         const Worker  *w = job->worker[k];
         RenderCounters counters = w->counters;
         sums[k] = &w->sums;
@@ -164,6 +167,9 @@ static Status gather_sums(Job *job, int workers, Arena *arena)
                            .boxes = job->boxes};
     const Status     status = target_sums_gather(picture, &job->rules, &of, arena);
     if (status == STATUS_OK && picture->target) target_grids_sample(job);
+    const SceneryTracer *tracer = job->scene.world->scenery;
+    if (status == STATUS_OK && picture->target && tracer)
+        return scenery_sums_gather(picture, &job->rules, scenery, workers, scenery_tracer_of(tracer), arena);
     return status;
 }
 

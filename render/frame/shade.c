@@ -60,6 +60,8 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
     status = visibility_create_seen(&posed, &eye, arena);
     if (status != STATUS_OK) return status;
     visibility_materials(posed, &world->materials);
+    status = world_scenery_join(posed, world, request->t_s, &eye, arena);
+    if (status != STATUS_OK) return status;
     scene->visibility = posed;
     status = world_need_patches(world, snapshot);
     if (status != STATUS_OK) return status;

@@ -330,6 +330,8 @@ static void count_hidden(TargetGrid *f, Worker *w, const Job *job, const int *ce
         if (hits->entity[i]) {
             f->hidden_entity += area;
             occlusion_add(&w->sums.hidden, job->rules.arena, f->entity, (int)hits->entity[i] - 1, 0, area);
+        } else if (hits->kind[i] == hit_scenery) {
+            f->hidden_scenery += area;
         } else if (hits->instance[i]) {
             f->hidden_plants += area;
         } else {

@@ -195,6 +195,7 @@ static void gather_one(TargetPixels *target, const Job *job, const TargetGrid *f
     target->occluded_ground = f->hidden_ground;
     target->occluded_entity = f->hidden_entity;
     target->occluded_plants = f->hidden_plants;
+    target->occluded_scenery = f->hidden_scenery;
     for (int b = 0; b < BAND_COUNT; b++) target->veiled[b] = f->visible > 0 ? f->veiled[b] / f->visible : 0;
     memcpy(target->amodal_box, f->amodal_box, sizeof f->amodal_box);
     for (int y = f->y0, k = 0; y < f->y1; y++)

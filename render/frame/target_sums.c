@@ -151,8 +151,7 @@ static void merge_box(int box[4], const int other[4])
     grow_box(box, other[2] - 1, other[3] - 1);
 }
 
-/* A sample's area in steps, which divide by every share, and the part of it that no small target covers. */
-static int64_t sample_steps(int64_t *seen, const SumRules *rules, const SharedBlock *of, size_t px)
+int64_t target_sums_steps(int64_t *seen, const SumRules *rules, const SharedBlock *of, size_t px)
 {
     const int64_t whole = llrint((double)rules->steps_per_px * of->share / (of->block->n * of->block->n));
     const double  covered = rules->picture->covered ? (double)rules->picture->covered[px] : 0;
@@ -169,7 +168,7 @@ static void count_seen(TargetSums *sums, int index, const SumRules *rules, const
     const size_t      px = picture_index(rules->picture, x, y);
     TargetCount      *count = &sums->target[index];
     int64_t           seen;
-    const int64_t     whole = sample_steps(&seen, rules, of, px);
+    const int64_t     whole = target_sums_steps(&seen, rules, of, px);
     count->visible += seen;
     for (int b = 0; b < BAND_COUNT && s->smoke.any; b++)
         count->veiled[b] += llrint((double)seen * samples_smoke_taken(s, rules->smoke_channel[b], sample));
@@ -222,12 +221,14 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const SharedBloc
             if (!sums->meets[k]) continue;
             const int     i = sums->some_index[k], x = block->x[i / samples], y = block->y[i / samples];
             int64_t       seen;
-            const int64_t whole = sample_steps(&seen, rules, of, picture_index(rules->picture, x, y));
+            const int64_t whole = target_sums_steps(&seen, rules, of, picture_index(rules->picture, x, y));
             count->amodal += whole;
             grow_box(count->amodal_box, x, y);
             if (s->hits.entity[i]) {
                 count->hidden_entity += whole;
                 occlusion_add(&sums->hidden, rules->arena, index, (int)s->hits.entity[i] - 1, whole, 0);
+            } else if (s->hits.kind[i] == hit_scenery) {
+                count->hidden_scenery += whole;
             } else if (s->hits.instance[i]) {
                 count->hidden_plants += whole;
             } else {
@@ -294,6 +295,7 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
         sum.hidden_ground += t->hidden_ground;
         sum.hidden_entity += t->hidden_entity;
         sum.hidden_plants += t->hidden_plants;
+        sum.hidden_scenery += t->hidden_scenery;
         for (int k = 0; k < picture_plane_count; k++) sum.radiance[k] += t->radiance[k];
         for (int b = 0; b < BAND_COUNT; b++) sum.veiled[b] += t->veiled[b];
         merge_box(sum.box, t->box);
@@ -305,6 +307,7 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
     target->occluded_ground = (double)sum.hidden_ground * share;
     target->occluded_entity = (double)sum.hidden_entity * share;
     target->occluded_plants = (double)sum.hidden_plants * share;
+    target->occluded_scenery = (double)sum.hidden_scenery * share;
     target->occluder = -1;
     for (int k = 0; k < picture_plane_count; k++)
         target->radiance[k] = (double)sum.radiance[k] * rules->radiance_quantum;

@@ -129,6 +129,7 @@ void world_cool(World *world)
 void world_close(World *world)
 {
     world_cool(world);
+    scenery_tracer_destroy(world->scenery);
     forest_destroy(world->forest);
     canopy_destroy(world->canopy);
     far_woods_destroy(world->far_woods);
@@ -204,6 +205,11 @@ static void stand_there(ShadowStand *out, const void *canopy, double x_m, double
     *out = (ShadowStand){(float)c.hides, (float)c.base_m, (float)c.top_m, (float)c.open};
 }
 
+static void raise_scenery(float *z_m, const ShadowGrid *g, const void *tracer)
+{
+    scenery_tracer_tops(z_m, tracer, g->nx, g->ny, g->x0_m, g->y0_m, g->cell_m);
+}
+
 static Status cast_shadows(World *world, double shadow_m, Pool *pool)
 {
     float     d_enu[3][heat_day_slots];
@@ -219,7 +225,9 @@ static Status cast_shadows(World *world, double shadow_m, Pool *pool)
                          .clumped = world->canopy ? clumped : NULL,
                          .plants = world->canopy ? stand_there : NULL,
                          .user = world->canopy,
-                         .cache = world->cache};
+                         .cache = world->cache,
+                         .raise = world->scenery ? raise_scenery : NULL,
+                         .raise_user = world->scenery};
     return heat_shadow_create(&world->shadow, &of, pool);
 }
 
@@ -271,7 +279,7 @@ Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m,
     return status == STATUS_OK ? world_warm(world, course, config, shadow_m, pool) : status;
 }
 
-Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena)
+static Status ground_at_time(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena)
 {
     HeatNow  *now;
     MarkHeat *mark_heat = NULL;
@@ -283,8 +291,18 @@ Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *mar
     if (status != STATUS_OK) return status;
     *out = arena_alloc(arena, 1, sizeof **out);
     if (!*out) return STATUS_NO_MEMORY;
-    **out = (HeatScene){now, world->shadow, mark_heat};
+    **out = (HeatScene){.now = now, .shadow = world->shadow, .marks = mark_heat};
     return STATUS_OK;
+}
+
+Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena)
+{
+    SceneryTemps *scenery;
+    Status        status = ground_at_time(out, world, marks, unix_s, arena);
+    if (status != STATUS_OK || !*out) return status;
+    status = world_scenery_temps(&scenery, world, unix_s, arena);
+    (*out)->scenery = status == STATUS_OK ? scenery : NULL;
+    return status;
 }
 
 double world_air_k(const World *world, double unix_s)
@@ -362,7 +380,7 @@ static Status ground_there(PlaceHeat *out, WorldVehicles *v, double unix_s, cons
     const World *world = v->world;
     if (v->scene_s != unix_s || !v->scene || v->scene->shadow != world->shadow) { /* benches change its shadows */
         arena_reset(v->arena);
-        const Status status = world_heat_at(&v->scene, world, NULL, unix_s, v->arena);
+        const Status status = ground_at_time(&v->scene, world, NULL, unix_s, v->arena);
         if (status != STATUS_OK) return status;
         v->scene_s = unix_s;
     }

@@ -11,6 +11,7 @@
 #include "render/light/canopy.h"
 #include "render/light/far_woods.h"
 #include "render/scattering/radar_image.h"
+#include "render/trace/scenery/scenery_tracer.h"
 #include "render/trace/visibility/visibility.h"
 #include "terrain/detail/detail.h"
 #include "terrain/earth/refraction.h"
@@ -27,6 +28,7 @@ typedef struct World {
     Forest           *forest;
     Canopy           *canopy;
     FarWoods         *far_woods; /* NULL: every plant stands */
+    SceneryTracer    *scenery;   /* NULL after world_open: none */
     PlanckTable      *planck_mwir, *planck_lwir;
     Atmosphere       *atmosphere; /* NULL after world_open; the caller may open one here; world_close closes it */
     RadarConfig       radar;
@@ -49,6 +51,12 @@ void world_keep(World *world, Cache *cache);
 /* Grows the prototypes and opens the forest over woods, which must outlive the world. Once, before the first frame; on
  * failure only world_close may follow. */
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool);
+/* What stands in it and takes no part: scenery must outlive the world. After world_plant, before world_warm and the
+ * first frame; once. isa: as world_open. STATUS_BAD_VALUE: a part's material is not in the table, or scenery's own
+ * numbers are wrong; it is logged. */
+Status world_scenery(World *world, const Scenery *scenery, const char *isa, Pool *pool);
+/* Joins it to a frame's visibility, as it is at exercise time t_s; nothing where there is none. */
+Status world_scenery_join(Visibility *v, const World *world, double t_s, const VisibilityConfig *of, Arena *arena);
 /* Warms the ground up to unix_s, that of exercise time 0. course becomes the world's, on failure too. shadow_m: cells
  * of its shadow map; 0: none. After world_plant, with an atmosphere. */
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool);
@@ -62,7 +70,8 @@ Status world_scenery_temps(SceneryTemps **out, const World *world, double unix_s
 /* The same as world_warm for a clear day of the atmosphere's own temperature: what benches and pictures of models stand
  * on. */
 Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m, Pool *pool);
-/* The ground's heat at a time, in the arena; *out NULL where the world is not warm. marks: may be NULL. */
+/* The heat of ground and scenery at a time, in the arena; times in order; *out NULL where the world is not warm. marks:
+ * may be NULL. */
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);
 /* The patches of a snapshot's models. One thread at a time. */
 Status world_need_patches(const World *world, const Snapshot *snapshot);

@@ -1,4 +1,4 @@
-/* render/frame/world_scenery.c: the heat of scenery, by the weather's course that warms the world's ground. */
+/* render/frame/world_scenery.c: scenery of the world: what rays meet of it, and what warms it. */
 #include "render/frame/world.h"
 
 #include <stdlib.h>
@@ -58,4 +58,30 @@ Status world_scenery_temps(SceneryTemps **out, const World *world, double unix_s
 {
     *out = NULL;
     return world->scenery_heat ? scenery_temps_at(out, world->scenery_heat, unix_s, arena) : STATUS_OK;
+}
+
+/* ---- what is seen of it ----------------------------------------------------------------------- */
+
+Status world_scenery(World *world, const Scenery *scenery, const char *isa, Pool *pool)
+{
+    char           path[512];
+    SceneryTracer *tracer;
+    if (!etc_path(path, sizeof path, "materials.csv")) return STATUS_BAD_VALUE;
+    if (scenery->objects == 0) return STATUS_OK;
+    Status status = scenery_tracer_create(&tracer, scenery, isa, pool);
+    if (status != STATUS_OK) return status;
+    status = scenery_tracer_materials(tracer, &world->materials, path);
+    if (status == STATUS_OK) world->scenery = tracer;
+    else scenery_tracer_destroy(tracer);
+    return status;
+}
+
+Status world_scenery_join(Visibility *v, const World *world, double t_s, const VisibilityConfig *of, Arena *arena)
+{
+    SceneryFrame  *frame;
+    SceneryFrameOf at = {.t_s = t_s, .skips_off = of->skips_off, .bend_per_m = of->bend_per_m};
+    if (!world->scenery) return STATUS_OK;
+    memcpy(at.eye_enu, of->eye_enu, sizeof at.eye_enu);
+    const Status status = scenery_frame_create(&frame, world->scenery, &at, arena);
+    return status == STATUS_OK ? scenery_frame_join(v, frame) : status;
 }

@@ -181,6 +181,16 @@ typedef struct ShadowStand {
 } ShadowStand;
 typedef void ShadowPlants(ShadowStand *out, const void *user, double x_m, double y_m);
 
+/* The cells' centres: cell (i, j) is at x0_m + i cell_m, y0_m + j cell_m. */
+typedef struct ShadowGrid {
+    int    nx, ny;
+    double x0_m, y0_m, cell_m;
+} ShadowGrid;
+/* Raises heights [ny][nx] to what stands there: a building's cell is shaded as its roof is, and casts a shadow from
+ * there. Of a wall the map knows no more than which cells' centres are behind it: within a cell of it the shade of the
+ * ground is that of the roof in part. */
+typedef void ShadowRaise(float *z_m, const ShadowGrid *grid, const void *user);
+
 enum { shadow_most_slots = 48, shadow_most_cells = 4000000 };
 
 /* cell_m: made larger where the grid would have more than shadow_most_cells. d_enu: towards the sun, d_enu[2] > 0.
@@ -194,6 +204,8 @@ typedef struct ShadowOf {
     const void   *user;
     Cache        *cache;   /* where the map is kept; NULL: nowhere */
     const float  *clumped; /* [slots]: factor on the leaf area for light of that slot; NULL: 1 */
+    ShadowRaise  *raise;   /* NULL: nothing but plants stands on the ground */
+    const void   *raise_user;
 } ShadowOf;
 Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool);
 void   heat_shadow_destroy(ShadowMap *map); /* accepts NULL */
@@ -236,10 +248,13 @@ bool heat_marks_at(MarkedGround *out, const MarkHeat *marks, int kind, const dou
 
 /* ---- the ground in one frame ----------------------------------------------------------------- */
 
+typedef struct SceneryTemps SceneryTemps; /* render/heat/scenery_heat.h */
+
 typedef struct HeatScene {
-    const HeatNow   *now;
-    const ShadowMap *shadow; /* NULL: nothing shaded it */
-    const MarkHeat  *marks;  /* NULL: none */
+    const HeatNow      *now;
+    const ShadowMap    *shadow;  /* NULL: nothing shaded it */
+    const MarkHeat     *marks;   /* NULL: none */
+    const SceneryTemps *scenery; /* NULL: scenery is as warm as the air */
 } HeatScene;
 
 /* Places of the ground side by side: class, place, normal, and absorptance over that of the kind. */

@@ -199,6 +199,7 @@ static Status cast(ShadowMap *m, Job *job, const ShadowOf *of, Pool *pool)
     const size_t cells = (size_t)m->nx * (size_t)m->ny, octets = cells * (size_t)m->stride;
     CacheKey     key = {.digest = NULL};
     run(pool, m->ny, fill_row, job);
+    if (of->raise) of->raise(m->z_m, &(ShadowGrid){m->nx, m->ny, m->x0_m, m->y0_m, m->cell_m}, of->raise_user);
     if (of->cache) key = key_of(m, of);
     if (of->cache && fetch(m, of->cache, &key, octets)) return STATUS_OK;
     for (size_t k = 0; of->plants && k < cells; k++)

@@ -80,8 +80,8 @@ void hemisphere_light_met(Paths *p, const HemisphereScene *scene, unsigned bands
         visibility_shadow(dark, scene->visibility, &p->hits, scene->air->light.sun_d_enu, counters);
     for (int i = 0; i < p->hits.count; i++) p->sun[i] = dark[i] ? 0 : 1;
     if (bands & (1 << AIR_MWIR | 1 << AIR_LWIR))
-        thermal_temperature(p->temp_k, scene->air, scene->materials, scene->patches ? &parts : NULL, &p->hits,
-                            p->hits.material, p->sun, p->texture, p->warmth_k);
+        thermal_temperature(p->temp_k, scene->air, scene->materials, &parts, &p->hits, p->hits.material, p->sun,
+                            p->texture, p->warmth_k);
 }
 
 double hemisphere_ground_radiance(const HemisphereScene *scene, AirBand band)

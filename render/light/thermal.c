@@ -8,6 +8,9 @@
 
 #include "render/light/thermal.h"
 #include "render/heat/heat.h"
+#include "render/heat/scenery_heat.h"
+#include "render/trace/scenery/scenery_tracer.h"
+#include "render/trace/scenery/scenery_tracer.h"
 #include "pitviper_simd.h"
 #include "pitviper.h"
 #include "terrain/weather/weather.h"
@@ -109,11 +112,25 @@ static double part_k(const PartTemps *parts, double air_k, const Hits *hits, int
 {
     const double n_enu[3] = {(double)hits->n_geo[0][i], (double)hits->n_geo[1][i], (double)hits->n_geo[2][i]};
     double       p_node[3], n_node[3];
-    if (!parts || !parts->snapshot->patch_k) return air_k;
+    if (!parts || !parts->patches || !parts->snapshot->patch_k) return air_k;
     visibility_on_part(p_node, n_node, parts->visibility, hits, i, n_enu);
     const double temp_k =
         patch_set_temp_k(parts->patches, parts->snapshot, (int)hits->entity[i] - 1, hits->part[i] - 1, p_node, n_node);
     return isfinite(temp_k) ? temp_k : air_k;
+}
+
+/* Temperature of scenery at a hit, over the air of its height; that of the air where none is known. */
+static double scenery_k(const Air *air, const SceneryFrame *scenery, double air_k, const Hits *hits, int i)
+{
+    const double side = hits->inside[i] ? -1 : 1; /* outward */
+    const double n_enu[3] = {side * (double)hits->n_geo[0][i], side * (double)hits->n_geo[1][i],
+                             side * (double)hits->n_geo[2][i]};
+    double       p_body[3], n_body[3];
+    if (!air->heat || !air->heat->scenery || !scenery) return air_k;
+    scenery_frame_on_body(p_body, n_body, scenery, hits, i, n_enu);
+    const double temp_k =
+        scenery_temp_k(air->heat->scenery, (int)hits->instance[i] - 1, hits->part[i] - 1, p_body, n_enu);
+    return isfinite(temp_k) ? temp_k + air_k - air->light.weather.air_temp_k : air_k;
 }
 
 /* Temperature of the air at eight hits: straight between the nodes, as air_temp_at. */
@@ -172,8 +189,9 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
                          const Hits *hits, const uint16_t *material, const float *sun, const float *photo,
                          const float *warmth_k)
 {
-    int    ground[hits_capacity], grounds = 0;
-    Leaves leaves;
+    const SceneryFrame *scenery = parts ? scenery_frame_in(parts->visibility) : NULL;
+    int                 ground[hits_capacity], grounds = 0;
+    Leaves              leaves;
     leaves.count = 0;
     for (int first = 0; first < hits->count; first += 8) {
         const int some = hits->count - first < 8 ? hits->count - first : 8;
@@ -190,6 +208,8 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
                 leaves_add(&leaves, i, m, here_k, open, sun ? (double)sun[i] : open);
             } else if (hits->kind[i] == hit_plant) {
                 temp_k[i] = (float)wood_k(air, material[i], here_k, hits, i);
+            } else if (hits->kind[i] == hit_scenery) {
+                temp_k[i] = (float)scenery_k(air, scenery, here_k, hits, i);
             } else if (hits->entity[i]) {
                 temp_k[i] = (float)part_k(parts, here_k, hits, i);
             } else if (!air->heat || hits->surface[i] == SURFACE_NONE) {

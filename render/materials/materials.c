@@ -207,9 +207,25 @@ static Status find_part_material(int *out, const Materials *m, const Model *mode
     return STATUS_BAD_VALUE;
 }
 
+Status materials_of_model(int *part, int *damaged, const Materials *m, const Model *model, const char *path)
+{
+    const int burnt = materials_find(m, "burnt");
+    for (int p = 0; p < model->part_count; p++) {
+        Status status = find_part_material(&part[p], m, model, p, model->part[p].material, path);
+        for (int state = 0; state < model_damage_states && status == STATUS_OK; state++) {
+            int        *row = &damaged[p * model_damage_states + state];
+            const char *name = model->part[p].damage_material[state];
+            *row = state == model_damage_states - 1 && burnt >= 0 ? burnt : part[p];
+            if (state > 0 && *name) status = find_part_material(row, m, model, p, name, path);
+        }
+        if (status != STATUS_OK) return status;
+    }
+    return STATUS_OK;
+}
+
 static Status resolve_parts(Materials *m, const Catalog *catalog, const char *path)
 {
-    const int model_count = catalog_model_count(catalog), burnt = materials_find(m, "burnt");
+    const int model_count = catalog_model_count(catalog);
     m->part = calloc((size_t)model_count + 1, sizeof *m->part);
     m->damaged = calloc((size_t)model_count + 1, sizeof *m->damaged);
     m->parts = calloc((size_t)model_count + 1, sizeof *m->parts);
@@ -221,16 +237,8 @@ static Status resolve_parts(Materials *m, const Catalog *catalog, const char *pa
         m->damaged[i] = calloc((size_t)model->part_count + 1, model_damage_states * sizeof **m->damaged);
         if (!m->part[i] || !m->damaged[i]) return STATUS_NO_MEMORY;
         m->parts[i] = model->part_count;
-        for (int p = 0; p < model->part_count; p++) {
-            Status status = find_part_material(&m->part[i][p], m, model, p, model->part[p].material, path);
-            for (int state = 0; state < model_damage_states && status == STATUS_OK; state++) {
-                int        *row = &m->damaged[i][p * model_damage_states + state];
-                const char *name = model->part[p].damage_material[state];
-                *row = state == model_damage_states - 1 && burnt >= 0 ? burnt : m->part[i][p];
-                if (state > 0 && *name) status = find_part_material(row, m, model, p, name, path);
-            }
-            if (status != STATUS_OK) return status;
-        }
+        const Status status = materials_of_model(m->part[i], m->damaged[i], m, model, path);
+        if (status != STATUS_OK) return status;
     }
     return STATUS_OK;
 }

@@ -59,6 +59,10 @@ Status materials_add_plants(Materials *m, const char *path, const char *ground_p
 void   materials_close(Materials *materials);
 int    materials_find(const Materials *materials, const char *name); /* -1: none */
 
+/* Rows of a model's parts: part[part_count], and damaged[part_count][model_damage_states] as Materials.damaged. path:
+ * of the table, for the log. STATUS_BAD_VALUE: a part's material is not in it. */
+Status materials_of_model(int *part, int *damaged, const Materials *m, const Model *model, const char *path);
+
 /* Row of a part of a model in a state of damage (snapshot_damage). */
 static inline int material_of_part(const Materials *m, int model, int part, int damage)
 {

@@ -17,7 +17,7 @@ typedef struct Rays {
 } Rays;
 
 /* Kind of a hit: sky, where nothing was met. */
-typedef enum HitKind { hit_sky, hit_ground, hit_part, hit_plant } HitKind;
+typedef enum HitKind { hit_sky, hit_ground, hit_part, hit_plant, hit_scenery } HitKind;
 
 /* A ray that met nothing: range_m INFINITY, everything else 0.
  *
@@ -35,13 +35,14 @@ typedef struct Hits {
     float    n_enu[3][hits_capacity]; /* unit shading normal, on the ray's side */
     uint8_t  kind[hits_capacity];     /* HitKind */
     uint16_t material[hits_capacity]; /* row in the table of materials (visibility_materials); 0: sky */
-    uint32_t facet[hits_capacity];    /* triangle of the model, where kind is hit_part; of plants, ForestHit.quad */
+    uint32_t facet[hits_capacity];    /* triangle of the model, of parts and scenery; of plants, ForestHit.quad */
     uint32_t entity[hits_capacity];   /* snapshot index + 1; 0: ground or sky */
-    uint16_t part[hits_capacity];     /* part index of the model + 1; 0: ground or sky */
-    uint16_t model[hits_capacity];    /* of the catalog, where entity > 0 */
+    uint16_t part[hits_capacity];     /* part index of the model + 1; 0: ground, plant or sky */
+    uint16_t model[hits_capacity];    /* of the catalog, where entity > 0; of scenery, of Scenery.model */
     uint8_t  inside[hits_capacity];   /* 1: a part was met from the inner side of its surface */
     uint8_t  surface[hits_capacity];  /* SurfaceClass where the ground was met, else 0 */
-    uint32_t instance[hits_capacity]; /* 1 + its number in its kind (plants: ForestHit.plant); 0: none, or entity */
+    uint32_t instance[hits_capacity]; /* 1 + its number in its kind (plants: ForestHit.plant; scenery: of
+                                       * Scenery.object); 0: none, or entity */
     /* of plants alone: */
     float albedo[hits_capacity];                            /* reflectance over that of the material */
     float radius_m[hits_capacity];                          /* of the branch; 0: a leaf */

@@ -84,6 +84,14 @@ static const void *next_target(FieldAt *at, int i)
     return i < r->target_count ? &r->target[i] : NULL;
 }
 
+static const void *clutter_of(const void *of) { return ((const FrameRecord *)of)->clutter_count > 0 ? of : NULL; }
+
+static const void *next_clutter(FieldAt *at, int i)
+{
+    const FrameRecord *r = at->of;
+    return i < r->clutter_count ? &r->clutter[i] : NULL;
+}
+
 /* ---- its error ----------------------------------------------------------------------------------- */
 
 /* rms over the image as a share of the band's mean, and in kelvin about that mean. The mean of the pseudo-radar is that
@@ -319,6 +327,10 @@ static const Field frame_rows[] = {
     {"targets", "", "in the order of the frame's entity table", "",
      "every entity in the field of view except the host, occluded ones too", .item = next_target,
      .type = "list of objects", .rows = &target_fields, .channel = FIELD_MOTION},
+    {"clutter", "", "in the order of the world's objects", "where no clutter is seen",
+     "what stands or drives about and takes no part in the exercise, of which some sample is seen: terrain.clutter",
+     .in = clutter_of, .item = next_clutter, .type = "list of objects", .rows = &clutter_fields,
+     .channel = FIELD_TARGETS, .newer = true},
     {"error", "", "", "with quality.budget off", "the frame's estimate of its own error", .in = errors_of,
      FIELD_OBJECT(error_rows), .channel = FIELD_ERROR},
     {"given_up", "", "", "in a frame of full quality",

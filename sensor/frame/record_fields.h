@@ -6,6 +6,7 @@
 
 extern const FieldTable record_frame_fields; /* a line: of FrameRecord */
 extern const FieldTable target_fields;       /* of it targets[]: of TargetRecord */
+extern const FieldTable clutter_fields;      /* of it clutter[]: of ClutterRecord */
 extern const FieldTable radar_fields;        /* of it radar: of RadarFrame */
 
 #endif

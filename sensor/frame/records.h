@@ -12,6 +12,7 @@
 #include "sensor/frame/publish_counters.h"
 #include "sensor/radar/radar_frame.h"
 #include "sensor/truth/truth.h"
+#include "sensor/frame/clutter_record.h"
 #include "sensor/frame/target_record.h"
 #include "sensor/frame/latency_private.h"
 #include "sensor/truth/frame_error.h"
@@ -36,6 +37,8 @@ typedef struct FrameRecord {
     const Sun            *sun;
     const TargetRecord   *target;
     int                   target_count;
+    const ClutterRecord  *clutter; /* [clutter_count] that is seen */
+    int                   clutter_count;
     const char           *frame_sha256; /* NULL: not given */
     const FrameError     *error;        /* NULL: not given */
     const RadarError     *radar_error;  /* likewise */

@@ -257,9 +257,10 @@ int target_class(DisEntityType type)
 static TargetOccluder occluder_of(const Target *t)
 {
     if (!t->occluder) return OCCLUDER_NONE;
-    return strcmp(t->occluder, "ground") == 0  ? OCCLUDER_GROUND
-           : strcmp(t->occluder, "trees") == 0 ? OCCLUDER_TREES
-                                               : OCCLUDER_ENTITY;
+    return strcmp(t->occluder, "ground") == 0    ? OCCLUDER_GROUND
+           : strcmp(t->occluder, "trees") == 0   ? OCCLUDER_TREES
+           : strcmp(t->occluder, "scenery") == 0 ? OCCLUDER_SCENERY
+                                                 : OCCLUDER_ENTITY;
 }
 
 static TargetRecord record_of(const Target *t, const Snapshot *snapshot, const Catalog *catalog)
@@ -316,10 +317,11 @@ const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord
         dis_entity_id_text(text, t->occluder_id);
         return text;
     }
-    return t->occluder == OCCLUDER_NONE     ? NULL
-           : t->occluder == OCCLUDER_GROUND ? "ground"
-           : t->occluder == OCCLUDER_TREES  ? "trees"
-                                            : "entity";
+    return t->occluder == OCCLUDER_NONE      ? NULL
+           : t->occluder == OCCLUDER_GROUND  ? "ground"
+           : t->occluder == OCCLUDER_TREES   ? "trees"
+           : t->occluder == OCCLUDER_SCENERY ? "scenery"
+                                             : "entity";
 }
 
 void target_box_coco(int out[4], const int box[4])

@@ -36,7 +36,13 @@
 #include "dis/pdu/pdu.h"
 
 /* The values are those of PitviperMemoryTarget.flags. */
-typedef enum TargetOccluder { OCCLUDER_NONE, OCCLUDER_GROUND, OCCLUDER_ENTITY, OCCLUDER_TREES = 4 } TargetOccluder;
+typedef enum TargetOccluder {
+    OCCLUDER_NONE,
+    OCCLUDER_GROUND,
+    OCCLUDER_ENTITY,
+    OCCLUDER_TREES = 4,
+    OCCLUDER_SCENERY = 8
+} TargetOccluder;
 
 /* NaN: not computed. */
 typedef struct TargetRecord {
@@ -60,7 +66,7 @@ typedef struct TargetRecord {
     double         los_rate_rps[2];         /* inertial; camera right and up */
     double         boresight_error_rad[2];  /* camera right and up */
     TargetOccluder occluder;                /* what hides most of it */
-    DisEntityId    occluder_id;             /* none: the ground, trees, or not known */
+    DisEntityId    occluder_id;             /* none: the ground, trees, scenery, or not known */
     double         dt_k;                    /* mean of its patches less the ground in the open */
     int            patches;                 /* 0: their temperatures are not known */
     const float   *patch_k;                 /* the snapshot's [patches] */
@@ -73,7 +79,7 @@ typedef struct TargetRecord {
 TargetRecord *target_records(const Target *target, int count, const Snapshot *snapshot, const Catalog *catalog,
                              Arena *arena);
 
-/* Names what hides most of it: the id of an entity, `ground`, `trees` or `entity`; NULL: nothing. */
+/* Names what hides most of it: the id of an entity, `ground`, `trees`, `scenery` or `entity`; NULL: nothing. */
 const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord *target);
 
 /* ---- a box in other forms ------------------------------------------------------------------------ */

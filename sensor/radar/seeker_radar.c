@@ -419,6 +419,8 @@ static Status make(RadarShot *shot)
     Status                 status = visibility_create_seen(&visibility, &seen, shot->arena);
     if (status != STATUS_OK) return status;
     visibility_materials(visibility, &scene->world->materials);
+    status = world_scenery_join(visibility, scene->world, scene->t_s, &seen, shot->arena);
+    if (status != STATUS_OK) return status;
     shot->visibility = visibility;
     shot->radar->points.count = 0;
     interval.sample = arena_alloc(shot->arena, interval_channels * (size_t)wave->pulses * (size_t)wave->samples,

@@ -187,6 +187,8 @@ enum { config_paths_size = 4096 };
         (PUBLISH_PAIRS_OFF, "off")(PUBLISH_PAIRS_TARGET, "target")(PUBLISH_PAIRS_ALL, "all"), \
         "replay only: render each frame also without its target, or without any entity, and both without noise") \
     ROW(BOOL, publish., coco, false, "replay only: write coco.json, boxes and masks of visible targets") \
+    ROW(BOOL, publish., coco_clutter, false, \
+        "coco.json has what is seen of clutter (terrain.clutter) too, in the category `clutter`; false: targets alone") \
     /* of 4 no class can be told */ \
     ROW(INT, publish., coco_min_pixels, 5, 1, 1000000, "px", \
         "targets with fewer mask pixels are ignore regions of coco.json (iscrowd)") \

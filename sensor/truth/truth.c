@@ -287,13 +287,16 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
 static void visibility_of(Target *t, const TargetPixels *px, bool plants)
 {
     const double ground = px->occluded_ground, entity = px->occluded_entity, trees = px->occluded_plants;
-    const double hidden = ground + entity + trees;
+    const double scenery = px->occluded_scenery, hidden = ground + entity + trees + scenery;
     if (!(px->amodal > 0)) return;
     t->visible_fraction = 1;
     if (plants) t->foliage_fraction = clamp(trees / px->amodal, 0, 1);
     if (!(hidden >= truth_occluded_least * px->amodal)) return;
     t->visible_fraction = clamp(px->visible / px->amodal, 0, 1);
-    t->occluder = trees > ground && trees > entity ? "trees" : ground >= entity ? "ground" : "entity";
+    t->occluder = scenery > trees && scenery > ground && scenery > entity ? "scenery"
+                  : trees > ground && trees > entity                      ? "trees"
+                  : ground >= entity                                      ? "ground"
+                                                                          : "entity";
     if (*t->occluder == 'e') t->occluder_index = px->occluder;
 }
 
@@ -323,7 +326,7 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
         for (int b = BAND_OPTICAL; b <= BAND_LWIR && px->visible > 0; b++)
             if (request->bands >> b & 1) t.band[b].veil_transmittance = 1 - px->veiled[b];
         line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);
-        visibility_of(&t, px, picture->instance != NULL);
+        visibility_of(&t, px, world->forest != NULL);
         memcpy(t.box, px->box, sizeof t.box);
         for (int k = 0; k < 4; k++) t.amodal_box[k] = px->projected ? px->projected_box[k] : px->amodal_box[k];
         radiometry(&t, px, picture, world, request, noise);

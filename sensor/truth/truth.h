@@ -38,7 +38,7 @@ typedef struct Target {
     int         box[4];                 /* visible pixels; empty: all 0 */
     double      amodal_box[4];          /* of its vertices, not clipped to the image */
     double      foliage_fraction;       /* of its area on the image, hidden by plants; NaN: there are none */
-    const char *occluder;               /* "ground", "trees", "entity" with occluder_index >= 0, or NULL */
+    const char *occluder;               /* "ground", "trees", "scenery", "entity" with occluder_index >= 0, or NULL */
     int         occluder_index;
     double      error_px; /* rms displacement on the image (frame_error.h) */
     TargetBand  band[BAND_COUNT];

@@ -132,6 +132,10 @@ static const BenchSuite suites[] = {
          "detail; of tables also by the same 16 rays in both, where no sampling is part of it. Rows with a limit are of tables beside full "
          "detail: noise is out where they say so (products of differences by two independent sets of rays), the standard error is by tiles, frames "
          "or vehicles, and twice it, at most half of what was asked, is added to the limit."},
+    {.name = "town",
+     .room = "sensor",
+     .help = "frames of 10,000 houses and 5,000 cars and trailers beside the same without: set-up, memory, time, bits",
+     .run = bench_town},
     {.name = "network",
      .room = "sensor",
      .help = "a live node, an exercise sent to it: what is lost, how late it is",

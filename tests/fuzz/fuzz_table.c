@@ -5,6 +5,7 @@
 
 #include "pitviper_channels.h"
 #include "entities/catalog/catalog.h"
+#include "entities/scenery/scenery_clutter.h"
 #include "entities/traces/effect_puffs.h"
 #include "render/heat/construction.h"
 #include "render/heat/given_heat.h"
@@ -32,6 +33,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
                                        "effects.csv",
                                        "materials.csv",
                                        "surfaces.csv",
+                                       "clutter.csv",
                                        "sensors.csv",
                                        "sensors/example_flir2.sheet",
                                        "radars.csv",
@@ -116,6 +118,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (file < 0) return 0;
 
     (void)channels_check(path);
+    (void)scenery_clutter_check(path);
     SpectralResponse *response;
     if (response_open(&response, path) == STATUS_OK) {
         if (!(response->nodes > 0 && response->nodes <= response_nodes_most)) abort();

@@ -2,7 +2,7 @@
  * stacked, far away, huge and without sense; and what rays meet by it is what they meet without. */
 #include "tests/render/hand_models.h"
 
-#include "render/trace/visibility/broad_phase_private.h"
+#include "render/trace/visibility/broad_phase.h"
 #include "render/trace/visibility/visibility.h"
 
 enum { most = 600, scenes = 6 };

@@ -138,7 +138,7 @@ static void marks_change_ground(void **state)
     const GroundMarks marks = {.tracks = 1, .track = &t, .burns = 1, .burn = &b};
     MarkHeat         *heat;
     CHECK(heat_marks_create(&heat, &marks, &frame, 0, 1000, &now, arena) == STATUS_OK);
-    const HeatScene scene = {&now, NULL, heat}, bare = {&now, NULL, NULL};
+    const HeatScene scene = {.now = &now, .marks = heat}, bare = {.now = &now};
     const double    in[3] = {0, 1.3, 0}, burnt[3] = {204, 0, 0}, beside[3] = {0, 9, 0};
     CHECK_NEAR(heat_scene_ground_k(&lifted_k, &scene, SURFACE_GRASS, in, up, 1), 303, 1e-4);
     CHECK_NEAR(lifted_k, 15, 1e-4);

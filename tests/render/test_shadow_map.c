@@ -39,7 +39,8 @@ static void length_of_a_shadow(void **state)
     ridge(40);
     for (int s = 0; s < 6; s++) slot(d, s, azimuth[s], high[s]);
     CHECK(pool_create(&pool, 2) == STATUS_OK);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 6, d, NULL, NULL, NULL, NULL}, pool) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){.elevation = &ground, .cell_m = 8, .slots = 6, .d_enu = d}, pool) ==
+          STATUS_OK);
     for (int s = 0; s < 6; s++) {
         /* across the ridge */
         const double reach_m = 40 / tan(high[s] * rad_per_deg) * fabs(sin(azimuth[s] * rad_per_deg));
@@ -87,7 +88,8 @@ static void cells_behind_a_ridge(void **state)
             elevation_build_pyramids(&ground);
         }
         for (int s = 0; s < 12; s++) slot(d, s, c[s].azimuth, c[s].high);
-        CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 12, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_OK);
+        CHECK(heat_shadow_create(&map, &(ShadowOf){.elevation = &ground, .cell_m = 8, .slots = 12, .d_enu = d}, NULL) ==
+              STATUS_OK);
         for (int s = 0; s < 12; s++) {
             if (c[s].across_x != across_x) continue;
             const double x = (double)d[0][s], y = (double)d[1][s], tangent = (double)d[2][s] / hypot(x, y);
@@ -122,7 +124,9 @@ static void light_below_a_stand(void **state)
     slot(d, 0, 90, 50);
     slot(d, 1, 270, 30);
     slot(d, 2, 180, 90);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 3, d, even_stand, NULL, NULL, NULL}, NULL) == STATUS_OK);
+    CHECK(heat_shadow_create(
+              &map, &(ShadowOf){.elevation = &ground, .cell_m = 8, .slots = 3, .d_enu = d, .plants = even_stand},
+              NULL) == STATUS_OK);
     uint8_t shadow[shadow_most_slots];
     double  open;
     heat_shadow_at(shadow, &open, map, -300, 40);
@@ -138,7 +142,11 @@ static void light_below_a_stand(void **state)
     heat_shadow_destroy(map);
     /* leaves that are clumped for a low sun, more for one overhead: each slot by its own factor */
     const float clumped[3] = {0.6f, 0.9f, 0.4f};
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 3, d, even_stand, NULL, NULL, clumped}, NULL) == STATUS_OK);
+    CHECK(heat_shadow_create(
+              &map,
+              &(ShadowOf){
+                  .elevation = &ground, .cell_m = 8, .slots = 3, .d_enu = d, .plants = even_stand, .clumped = clumped},
+              NULL) == STATUS_OK);
     heat_shadow_at(shadow, &open, map, -300, 40);
     for (int s = 0; s < 3; s++)
         CHECK_NEAR(1 - shadow[s] / 255.0, exp(-0.5 * 3 * (double)clumped[s] / (double)d[2][s]), 0.0025);
@@ -165,8 +173,11 @@ static void light_through_one_column(void **state)
         int        shaded = 0;
         ridge(0);
         slot(d, 0, azimuth[!in_x][c % 2], 40);
-        CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, 1, d, one_column, &in_x, NULL, NULL}, NULL) ==
-              STATUS_OK);
+        CHECK(heat_shadow_create(
+                  &map,
+                  &(ShadowOf){
+                      .elevation = &ground, .cell_m = 8, .slots = 1, .d_enu = d, .plants = one_column, .user = &in_x},
+                  NULL) == STATUS_OK);
         const double up = (double)d[2][0], level = hypot((double)d[0][0], (double)d[1][0]),
                      step = (double)d[in_x ? 0 : 1][0] / level, rise_m = 8 * up / level;
         for (int cell = -5; cell <= 5; cell++) {
@@ -190,12 +201,14 @@ static void large_terrain_has_larger_cells(void **state)
     ShadowMap *map;
     ridge(5);
     slot(d, 0, 90, 50);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 0.5, 1, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){.elevation = &ground, .cell_m = 0.5, .slots = 1, .d_enu = d}, NULL) ==
+          STATUS_OK);
     CHECK(heat_shadow_cell_m(map) == 1 && heat_shadow_bytes(map) < 9 * (size_t)shadow_most_cells);
     heat_shadow_destroy(map);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 0, 1, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_BAD_VALUE);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&(Elevation){0}, 8, 1, d, NULL, NULL, NULL, NULL}, NULL) ==
+    CHECK(heat_shadow_create(&map, &(ShadowOf){.elevation = &ground, .cell_m = 0, .slots = 1, .d_enu = d}, NULL) ==
           STATUS_BAD_VALUE);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){.elevation = &(Elevation){0}, .cell_m = 8, .slots = 1, .d_enu = d},
+                             NULL) == STATUS_BAD_VALUE);
     elevation_destroy(&ground);
 }
 
@@ -210,7 +223,8 @@ static void places_between_cells(void **state)
     int        mixed = 0;
     ridge(40);
     for (int s = 0; s < slots; s++) slot(d, s, 60 + 20 * s, 9 + 4 * s);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, slots, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &(ShadowOf){.elevation = &ground, .cell_m = 8, .slots = slots, .d_enu = d}, NULL) ==
+          STATUS_OK);
     for (int i = -30; i < 30; i++) {
         uint8_t corner[4][shadow_most_slots], found[shadow_most_slots];
         for (int k = 0; k < 4; k++) heat_shadow_at(corner[k], &open, map, 8 * (i + (k & 1)), 8 * (k >> 1));
@@ -252,8 +266,9 @@ static void places_side_by_side(void **state)
     for (int k = 0; k < SURFACE_COUNT; k++) now.kind_of[k] = k;
     for (int k = 0; k < 9; k++) now.table.sun_k[kind][k] = 307;
     for (int k = 0; k < heat_ups; k++) now.table.shade_k[kind][k] = 291, now.table.dark_k[kind][k] = 284;
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, slots, d, NULL, NULL, NULL, NULL}, NULL) == STATUS_OK);
-    const HeatScene scene = {&now, map, NULL};
+    CHECK(heat_shadow_create(&map, &(ShadowOf){.elevation = &ground, .cell_m = 8, .slots = slots, .d_enu = d}, NULL) ==
+          STATUS_OK);
+    const HeatScene scene = {.now = &now, .shadow = map};
     for (int first = 0; first < 60; first += heat_lanes) {
         GroundPlaces at = {.surface = {kind, kind, kind, kind}};
         HeatPlaces   one_by_one;
@@ -278,14 +293,57 @@ static void places_side_by_side(void **state)
     ground = (Elevation){0};
 }
 
+/* A block of 24 x 24 m and 12 m high about x = 200, y = 100. */
+static void raise_block(float *z_m, const ShadowGrid *g, const void *user)
+{
+    for (int j = 0; j < g->ny; j++)
+        for (int i = 0; i < g->nx; i++) {
+            const double x = g->x0_m + i * g->cell_m, y = g->y0_m + j * g->cell_m;
+            if (fabs(x - 200) < 12 && fabs(y - 100) < 12) z_m[j * g->nx + i] += *(const float *)user;
+        }
+}
+
+/* What stands on the ground shades it as far as its height and the sun's say, and not itself; elsewhere nothing
+ * changes. */
+static void what_stands_on_the_ground(void **state)
+{
+    (void)state;
+    static const float high_m = 12;
+    float              d[3][shadow_most_slots] = {{0}};
+    ShadowMap         *map, *bare;
+    ridge(0);
+    slot(d, 0, 180, 30), slot(d, 1, 90, 45);
+    ShadowOf of = {.elevation = &ground, .cell_m = 2, .slots = 2, .d_enu = d};
+    CHECK(heat_shadow_create(&bare, &of, NULL) == STATUS_OK);
+    of.raise = raise_block, of.raise_user = &high_m;
+    CHECK(heat_shadow_create(&map, &of, NULL) == STATUS_OK);
+    uint8_t shadow[shadow_most_slots];
+    double  open, north_m = 0, west_m = 0;
+    for (double away_m = 0.25; away_m < 60; away_m += 0.5) {
+        heat_shadow_at(shadow, &open, map, 200, 112 + away_m);
+        north_m += 0.5 * shadow[0] / 255.0;
+        heat_shadow_at(shadow, &open, map, 188 - away_m, 100);
+        west_m += 0.5 * shadow[1] / 255.0;
+        heat_shadow_at(shadow, &open, map, 200, 88 - away_m); /* its lit side */
+        CHECK(shadow[0] == 0);
+    }
+    print_message("shaded: %.1f m north, %.1f m west\n", north_m, west_m);
+    CHECK_NEAR(north_m, high_m / tan(30 * rad_per_deg), 2);
+    CHECK_NEAR(west_m, high_m, 2);
+    heat_shadow_at(shadow, &open, map, 200, 100);
+    CHECK(shadow[0] == 0 && shadow[1] == 0 && open == 1);
+    heat_shadow_at(shadow, &open, bare, 200, 120);
+    CHECK(shadow[0] == 0);
+    heat_shadow_destroy(map);
+    heat_shadow_destroy(bare);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(length_of_a_shadow),
-                                       cmocka_unit_test(cells_behind_a_ridge),
-                                       cmocka_unit_test(places_between_cells),
-                                       cmocka_unit_test(places_side_by_side),
-                                       cmocka_unit_test(light_below_a_stand),
-                                       cmocka_unit_test(light_through_one_column),
-                                       cmocka_unit_test(large_terrain_has_larger_cells)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(length_of_a_shadow),       cmocka_unit_test(what_stands_on_the_ground),
+        cmocka_unit_test(cells_behind_a_ridge),     cmocka_unit_test(places_between_cells),
+        cmocka_unit_test(places_side_by_side),      cmocka_unit_test(light_below_a_stand),
+        cmocka_unit_test(light_through_one_column), cmocka_unit_test(large_terrain_has_larger_cells)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 #include "tests/check.h"
 
 #include "entities/catalog/catalog.h"
+#include "entities/scenery/scenery_clutter.h"
 #include "entities/traces/effect_puffs.h"
 #include "pitviper_table.h"
 #include "render/heat/construction.h"
@@ -177,6 +178,7 @@ static const struct Reader {
     {"sensors.csv", read_sensor, NULL},
     {"radars.csv", read_radar, NULL},
     {"woods.csv", read_woods, NULL},
+    {"clutter.csv", scenery_clutter_check, NULL},
     {"cover_nlcd.csv", surface_table_check, NULL},
     {"catalog.csv", read_catalog, NULL},
     {"radar/clutter.csv", read_clutter, NULL},

@@ -1,23 +1,9 @@
-/* render/trace/visibility/broad_phase.c: a bounding-volume tree over spheres. */
+/* render/trace/visibility/broad_phase.c: builds the tree over spheres, and finds what lies in a volume. */
 #include "render/trace/visibility/broad_phase_private.h"
 
-#include <immintrin.h>
 #include <stdlib.h>
 
-enum { leaf_items = 4, morton_bits = 21, deepest = 32, bitmap_bits = 1 << 18 };
-
-typedef struct Box {
-    double low[3], high[3]; /* empty: low > high */
-} Box;
-
-struct BroadPhase {
-    int  count;
-    int  leaves;         /* a power of two */
-    Box *node;           /* [2 leaves], from 1: the root */
-    int *item;           /* [count], in the order of the leaves */
-    double (*sphere)[4]; /* [count], likewise: centre and radius */
-    Box *ray_node, *box; /* [2 leaves], [count]: those that rays are tested with; within node and sphere */
-};
+enum { bitmap_bits = 1 << 18 };
 
 /* ---- building ----------------------------------------------------------------------------------- */
 
@@ -62,25 +48,6 @@ static Ordered *sort_by_key(Ordered *from, Ordered *to, int count)
 static bool is_sphere(const double s[4])
 {
     return isfinite(s[0]) && isfinite(s[1]) && isfinite(s[2]) && isfinite(s[3]) && s[3] >= 0;
-}
-
-static void grow(Box *box, const double s[4])
-{
-    /* a million times the rounding error, at any distance from the origin */
-    const double room_m = s[3] * (1 + 1e-9) + 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
-    for (int c = 0; c < 3; c++) {
-        box->low[c] = fmin(box->low[c], s[c] - room_m);
-        box->high[c] = fmax(box->high[c], s[c] + room_m);
-    }
-}
-
-static const Box empty_box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-
-static Box box_of_sphere(const double s[4])
-{
-    Box box = empty_box;
-    grow(&box, s);
-    return box;
 }
 
 static void join(Box *box, const Box *a, const Box *b)
@@ -239,6 +206,37 @@ int broad_phase_in_planes(int *list, const BroadPhase *tree, const double (*plan
     return count;
 }
 
+int broad_phase_some_in_planes(int *list, int most, const BroadPhase *tree, const BroadLift *lift,
+                               const double (*plane)[4], int planes)
+{
+    int stack[deepest], depth = 0, count = 0;
+    if (tree->count == 0) return 0;
+    stack[depth++] = 1;
+    while (depth > 0) {
+        const int n = stack[--depth];
+        Box       box = tree->ray_node[n];
+        bool      beyond = !(box.low[0] <= box.high[0]);
+        if (!beyond && lift) box = raised(&box, lift);
+        for (int p = 0; p < planes && !beyond; p++) beyond = box_beyond(&box, plane[p]);
+        if (beyond) continue;
+        if (n < tree->leaves) {
+            stack[depth++] = 2 * n + 1;
+            stack[depth++] = 2 * n;
+            continue;
+        }
+        const int first = (n - tree->leaves) * leaf_items;
+        for (int k = first; k < first + leaf_items && k < tree->count; k++) {
+            box = lift ? raised(&tree->box[k], lift) : tree->box[k];
+            beyond = false;
+            for (int p = 0; p < planes && !beyond; p++) beyond = box_beyond(&box, plane[p]);
+            if (beyond) continue;
+            if (count == most) return -1;
+            list[count++] = tree->item[k];
+        }
+    }
+    return count;
+}
+
 static bool boxes_touch(const Box *box, const double low[3], const double high[3], double more_m)
 {
     for (int c = 0; c < 3; c++)
@@ -313,141 +311,4 @@ int broad_phase_swept(int *list, int most, const BroadPhase *tree, const double 
         }
     }
     return count;
-}
-
-/* ---- ray queries -------------------------------------------------------------------------------- */
-
-typedef __m256d Four;
-
-typedef struct Slabs {
-    Four o[3][broad_packet / 4], per[3][broad_packet / 4]; /* 1 / d; 1e30 for a ray along the slab */
-    int  fours;
-} Slabs;
-
-static void slabs_of(Slabs *s, const BroadRays *rays)
-{
-    const Four sign = _mm256_set1_pd(-0.0), one = _mm256_set1_pd(1), least = _mm256_set1_pd(1e-30);
-    s->fours = 0;
-    for (int f = 0; f < broad_packet / 4; f++) {
-        for (int c = 0; c < 3; c++) {
-            const Four d = _mm256_load_pd(rays->d[c] + 4 * f);
-            const Four along = _mm256_cmp_pd(_mm256_andnot_pd(sign, d), least, _CMP_LT_OQ);
-            s->o[c][f] = _mm256_load_pd(rays->o[c] + 4 * f);
-            s->per[c][f] = _mm256_blendv_pd(one / d, _mm256_set1_pd(1e30), along);
-        }
-        for (int k = 4 * f; k < 4 * f + 4; k++)
-            if (rays->limit_m[k] >= 0) s->fours = f + 1;
-    }
-}
-
-/* Where the first of the rays enters the box within its limit; INFINITY: none does. */
-static double entry_m(const Slabs *s, const BroadRays *rays, const double low[3], const double high[3])
-{
-    Four nearest = _mm256_set1_pd(INFINITY);
-    if (!(low[0] <= high[0])) return INFINITY;
-    for (int f = 0; f < s->fours; f++) {
-        Four in = _mm256_setzero_pd(), out = _mm256_set1_pd(INFINITY);
-        for (int c = 0; c < 3; c++) {
-            const Four a = (_mm256_set1_pd(low[c]) - s->o[c][f]) * s->per[c][f];
-            const Four b = (_mm256_set1_pd(high[c]) - s->o[c][f]) * s->per[c][f];
-            /* the second operand stays where the first is no number */
-            in = _mm256_max_pd(_mm256_min_pd(a, b), in);
-            out = _mm256_min_pd(_mm256_max_pd(a, b), out);
-        }
-        /* a rounding of the products: nothing is missed by it */
-        in = in * _mm256_set1_pd(1 - 1e-11);
-        const Four limit = _mm256_load_pd(rays->limit_m + 4 * f);
-        const Four meets = _mm256_and_pd(_mm256_cmp_pd(in, out, _CMP_LE_OQ), _mm256_cmp_pd(in, limit, _CMP_LE_OQ));
-        nearest = _mm256_min_pd(nearest, _mm256_blendv_pd(_mm256_set1_pd(INFINITY), in, meets));
-    }
-    double each[4];
-    _mm256_storeu_pd(each, nearest);
-    return fmin(fmin(each[0], each[1]), fmin(each[2], each[3]));
-}
-
-static double largest_limit(const BroadRays *rays)
-{
-    double largest = -1;
-    for (int k = 0; k < broad_packet; k++) largest = rays->limit_m[k] > largest ? rays->limit_m[k] : largest;
-    return largest;
-}
-
-/* Boxes that rays are tested with, and by how much they are larger. */
-typedef struct Boxes {
-    const Box *node, *item; /* item: NULL: those of the spheres */
-    double     more_m;
-} Boxes;
-
-static double entry_of(const Slabs *slabs, const BroadRays *rays, const Box *box, double more_m)
-{
-    double low[3], high[3];
-    if (more_m == 0) return entry_m(slabs, rays, box->low, box->high);
-    for (int c = 0; c < 3; c++) low[c] = box->low[c] - more_m, high[c] = box->high[c] + more_m;
-    return entry_m(slabs, rays, low, high);
-}
-
-/* Those of a leaf that may be met, nearest first. */
-static void visit_leaf(const BroadPhase *tree, int leaf, const Boxes *boxes, const Slabs *slabs, BroadRays *rays,
-                       BroadVisit *visit, void *user)
-{
-    struct {
-        double entry_m;
-        int    item;
-    } met[leaf_items];
-    int       count = 0;
-    const int first = leaf * leaf_items;
-    for (int k = first; k < first + leaf_items && k < tree->count; k++) {
-        const Box    box = boxes->item ? boxes->item[k] : box_of_sphere(tree->sphere[k]);
-        const double at_m = entry_of(slabs, rays, &box, boxes->more_m);
-        if (!(at_m < INFINITY)) continue;
-        int to = count++;
-        for (; to > 0 && met[to - 1].entry_m > at_m; to--) met[to] = met[to - 1];
-        met[to].entry_m = at_m, met[to].item = tree->item[k];
-    }
-    for (int k = 0; k < count; k++)
-        if (k == 0 || met[k].entry_m <= largest_limit(rays)) visit(user, met[k].item);
-}
-
-static void walk(const BroadPhase *tree, const Boxes *boxes, BroadRays *rays, BroadVisit *visit, void *user)
-{
-    struct {
-        double entry_m;
-        int    node;
-    } stack[2 * deepest];
-    Slabs slabs;
-    int   depth = 0;
-    if (tree->count == 0) return;
-    slabs_of(&slabs, rays);
-    stack[depth].entry_m = entry_of(&slabs, rays, &boxes->node[1], boxes->more_m);
-    stack[depth++].node = 1;
-    while (depth > 0) {
-        const double at_m = stack[--depth].entry_m;
-        const int    n = stack[depth].node;
-        if (!(at_m < INFINITY && at_m <= largest_limit(rays))) continue;
-        if (n >= tree->leaves) {
-            visit_leaf(tree, n - tree->leaves, boxes, &slabs, rays, visit, user);
-            continue;
-        }
-        double side_m[2];
-        for (int k = 0; k < 2; k++) side_m[k] = entry_of(&slabs, rays, &boxes->node[2 * n + k], boxes->more_m);
-        const int first = side_m[1] < side_m[0];
-        for (int k = 0; k < 2; k++) { /* the nearer is taken from the stack first */
-            const int side = k == 0 ? !first : first;
-            if (!(side_m[side] < INFINITY)) continue;
-            stack[depth].entry_m = side_m[side];
-            stack[depth++].node = 2 * n + side;
-        }
-    }
-}
-
-void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit, void *user)
-{
-    const Boxes boxes = {.node = tree->ray_node, .item = tree->box};
-    walk(tree, &boxes, rays, visit, user);
-}
-
-void broad_phase_rays_near(const BroadPhase *tree, BroadRays *rays, double more_m, BroadVisit *visit, void *user)
-{
-    const Boxes boxes = {.node = tree->node, .more_m = more_m};
-    walk(tree, &boxes, rays, visit, user);
 }

@@ -1,50 +1,56 @@
-/* render/trace/visibility/broad_phase_private.h: a bounding-volume tree over spheres: finds the items that may be met
- * by a ray, or lie in a volume. It is a conservative filter: what it leaves out cannot be met, and what it lists must
- * still be tested.
- *
- * Built anew each frame, O(n): the spheres are sorted along a Morton curve, four to a leaf, and the leaves are the
- * last row of a complete binary tree, so that node n has the children 2 n and 2 n + 1. Immutable once built, any
- * number of threads may query it. Boxes have a margin for the rounding of every test here: what begins strictly
- * beyond a ray's limit is left out, what begins at it is not. */
+/* render/trace/visibility/broad_phase_private.h: the tree over spheres, shared by broad_phase.c, which builds it, and
+ * broad_phase_rays.c. */
 #ifndef RENDER_TRACE_VISIBILITY_BROAD_PHASE_PRIVATE_H
 #define RENDER_TRACE_VISIBILITY_BROAD_PHASE_PRIVATE_H
 
-#include "pitviper.h"
+#include "render/trace/visibility/broad_phase.h"
 
-enum { broad_packet = 16 }; /* rays that traverse the tree together */
+enum { leaf_items = 4, morton_bits = 21, deepest = 32 };
 
-typedef struct BroadPhase BroadPhase;
+typedef struct Box {
+    double low[3], high[3]; /* empty: low > high */
+} Box;
 
-/* item[count]: identifiers of the spheres, ascending; sphere[count]: centre and radius. Spheres that are not finite,
- * or of a negative radius, are never listed. */
-Status broad_phase_create(BroadPhase **out, const int *item, const double (*sphere)[4], int count, Arena *arena);
-int    broad_phase_count(const BroadPhase *tree); /* of those that may be listed */
+struct BroadPhase {
+    int  count;
+    int  leaves;         /* a power of two */
+    Box *node;           /* [2 leaves], from 1: the root */
+    int *item;           /* [count], in the order of the leaves */
+    double (*sphere)[4]; /* [count], likewise: centre and radius */
+    Box *ray_node, *box; /* [2 leaves], [count]: those that rays are tested with; within node and sphere */
+};
 
-/* Closer boxes for rays, which pass many spheres that they do not meet anything in: box_of, for each item, its own box
- * (what rays may meet of it lies in both), or false: as it was. Before any ray. */
-typedef bool BroadBox(void *user, int item, double low[3], double high[3]);
-void         broad_phase_tighten(BroadPhase *tree, BroadBox *box_of, void *user);
+static inline void grow(Box *box, const double s[4])
+{
+    /* a million times the rounding error, at any distance from the origin */
+    const double room_m = s[3] * (1 + 1e-9) + 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
+    for (int c = 0; c < 3; c++) {
+        box->low[c] = fmin(box->low[c], s[c] - room_m);
+        box->high[c] = fmax(box->high[c], s[c] + room_m);
+    }
+}
 
-/* Items of which some point of the sphere may lie within all planes (n, d): dot(n, p) >= d, n unit; ascending. list:
- * room for all. Returns how many. */
-int broad_phase_in_planes(int *list, const BroadPhase *tree, const double (*plane)[4], int planes);
-/* Items whose spheres, grown by more_m, may touch a box; ascending. */
-int broad_phase_near_box(int *list, const BroadPhase *tree, const double low[3], const double high[3], double more_m);
-/* Items whose spheres may be met by rays that leave a sphere in the unit direction d, at most `most` of them in no
- * order. -1: there are more. */
-int broad_phase_swept(int *list, int most, const BroadPhase *tree, const double centre[3], double radius_m,
-                      const double d[3]);
+static const Box empty_box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 
-/* Rays that traverse the tree together; limit_m: search limit, may be reduced meanwhile, -1 ends the search. Padded
- * to a multiple of broad_packet by the caller with limits of -1. */
-typedef struct BroadRays {
-    double o[3][broad_packet], d[3][broad_packet], limit_m[broad_packet];
-} __attribute__((aligned(64))) BroadRays;
+static inline Box box_of_sphere(const double s[4])
+{
+    Box box = empty_box;
+    grow(&box, s);
+    return box;
+}
 
-/* Calls visit for items that some of the rays may meet within their limits, approximately nearest first. */
-typedef void BroadVisit(void *user, int item);
-void         broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit, void *user);
-/* Likewise for items whose spheres, grown by more_m, some of the rays may meet, whatever closer boxes there are. */
-void broad_phase_rays_near(const BroadPhase *tree, BroadRays *rays, double more_m, BroadVisit *visit, void *user);
+/* A box about all that it holds, raised: by no less than where it is nearest, no more than where it is farthest. */
+static inline Box raised(const Box *box, const BroadLift *lift)
+{
+    Box    out = *box;
+    double near2 = 0, far2 = 0;
+    for (int c = 0; c < 2; c++) {
+        const double low = box->low[c] - lift->eye_enu[c], high = box->high[c] - lift->eye_enu[c];
+        const double far = fabs(low) > fabs(high) ? low : high, near = low > 0 ? low : high < 0 ? high : 0;
+        near2 += near * near, far2 += far * far;
+    }
+    out.low[2] += lift->bend_per_m * near2 * (1 - 1e-9), out.high[2] += lift->bend_per_m * far2 * (1 + 1e-9);
+    return out;
+}
 
 #endif

@@ -62,6 +62,9 @@ typedef struct TraceEntry {
  * STATUS_NO_MEMORY: more entries, or more found_octets, than there is room for. */
 Status visibility_add(Visibility *v, const TraceEntry *entry, const void *self);
 
+/* self of an entry of the list; NULL: it is not in it. */
+const void *visibility_self(const Visibility *v, const TraceEntry *entry);
+
 /* Unit normals of a hit, on the ray's side; the shading normal is turned back to edge-on where it faces away. */
 void visibility_store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3]);
 

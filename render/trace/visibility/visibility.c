@@ -50,6 +50,13 @@ Status visibility_add(Visibility *v, const TraceEntry *entry, const void *self)
     return STATUS_OK;
 }
 
+const void *visibility_self(const Visibility *v, const TraceEntry *entry)
+{
+    for (int k = 0; k < v->entries; k++)
+        if (v->entry[k].of == entry) return v->entry[k].self;
+    return NULL;
+}
+
 /* Asks an entry, and takes its hits where they are nearer, or as near and it is the earlier in the list. */
 static void ask_entry(double *range_m, TraceBlock *block, const ListedEntry *entry, int place, unsigned char *found)
 {
@@ -167,6 +174,7 @@ static const struct {
     [SKIP_LIGHT] = {"light", "light of places near vehicles, asked for once a frame: hits that may share it"},
     [SKIP_TREE] = {"tree", "entities left out by the tree of their spheres: block-entity, ray-entity pairs"},
     [SKIP_KEPT] = {"kept", "what paths from sample points meet, kept from earlier frames: points"},
+    [SKIP_SCENERY] = {"scenery", "scenery left out by the trees of its boxes: ray-object pairs"},
 };
 
 const char *visibility_skip_name(Skip skip) { return rows[skip].name; }

@@ -41,9 +41,10 @@ typedef enum Skip {
     SKIP_CELL,          /* rays over a small target's box that miss it, and meeting it a second time */
     SKIP_RETRACE,       /* a pixel's first ray, when more are traced: its planes still hold its hit */
     SKIP_SMOKE,         /* smoke and dust that a block of pixels cannot see */
-    SKIP_LIGHT, /* light of sample points that a neighbouring hit has computed already in this frame, or none needs */
-    SKIP_TREE,  /* entities that the tree of their spheres leaves out: blocks, rays, sun rays, places near */
-    SKIP_KEPT,  /* paths from sample points whose meetings an earlier frame left (render/light/sky_visibility.h) */
+    SKIP_LIGHT,   /* light of sample points that a neighbouring hit has computed already in this frame, or none needs */
+    SKIP_TREE,    /* entities that the tree of their spheres leaves out: blocks, rays, sun rays, places near */
+    SKIP_KEPT,    /* paths from sample points whose meetings an earlier frame left (render/light/sky_visibility.h) */
+    SKIP_SCENERY, /* scenery that the trees of its boxes leave out: blocks, rays, sun rays */
     SKIP_COUNT
 } Skip;
 
@@ -56,7 +57,7 @@ static inline bool skips(unsigned off, Skip skip) { return !(off >> skip & 1); }
 
 /* ---- hits and shadows ------------------------------------------------------------------------ */
 
-/* One frame's world: a tree over the spheres of all entities (render/trace/visibility/broad_phase_private.h), and the
+/* One frame's world: a tree over the spheres of all entities (render/trace/visibility/broad_phase.h), and the
  * nodes of those that are needed. Posing costs transforms only; nothing is committed or kept between frames, so any
  * number of them may be alive and traced at once. */
 typedef struct Visibility Visibility;
@@ -64,6 +65,7 @@ typedef struct Visibility Visibility;
 typedef struct VisibilityCounters {
     uint64_t rays_ground, rays_parts, rays_sun_ground, rays_sun_parts; /* tests of each tracer */
     uint64_t rays_plants, rays_sun_plants;                             /* that entered some plant's box */
+    uint64_t rays_scenery, rays_sun_scenery;                           /* ray-object pairs that were tested */
     uint64_t hits_by_table;     /* first hits of plants by their tables (render/trace/plants/forest_table.c) */
     uint64_t rays_sun_for_heat; /* rays to the sun that gave leaves their temperature, and light as well */
     uint64_t skipped_parts, skipped_sun_parts; /* ray x entity pairs proven empty */

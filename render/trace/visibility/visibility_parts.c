@@ -8,22 +8,6 @@ typedef struct PartsFound {
 
 uint32_t parts_found_entity(const void *found, int ray) { return ((const PartsFound *)found)->entity[ray]; }
 
-/* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag out:
- * no branches. */
-void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
-                      const double *limit_m, const double centre[3], double radius_m)
-{
-    const double *ox = o[0], *oy = o[1], *oz = o[2], *dx = d[0], *dy = d[1], *dz = d[2];
-    for (int i = 0; i < count; i++) {
-        const double mx = centre[0] - ox[i], my = centre[1] - oy[i], mz = centre[2] - oz[i];
-        const double along = mx * dx[i] + my * dy[i] + mz * dz[i];
-        const double cx = mx - along * dx[i], cy = my - along * dy[i], cz = mz - along * dz[i];
-        const double left = radius_m * radius_m - (cx * cx + cy * cy + cz * cz);
-        const double half = sqrt(left > 0 ? left : 0);
-        meets[i] = (left > 0) & (along + half > 0) & (along - half < limit_m[i]);
-    }
-}
-
 /* The entity's sphere as these rays meet it. */
 static void meet_sphere(uint8_t *ask, const Visibility *v, const Rays *rays, int index, const double *limit_m)
 {
@@ -33,6 +17,19 @@ static void meet_sphere(uint8_t *ask, const Visibility *v, const Rays *rays, int
     const double        centre[3] = {entity->centre_enu[0], entity->centre_enu[1],
                                      entity->centre_enu[2] + lift_for(v, rays, index)};
     rays_meet_sphere(ask, rays->count, o, d, limit_m, centre, entity->radius_m);
+}
+
+static const PosedEntity *entity_posed(const void *v, int index) { return visibility_posed(v, index); }
+static double             entity_lift_m(const void *v, int index) { return visibility_lift(v, index); }
+
+/* The entities as a crowd; bent: for rays that are. */
+static Crowd entity_crowd(const Visibility *v, bool bent)
+{
+    return (Crowd){.tree = v->tree,
+                   .posed = entity_posed,
+                   .lift_m = bent && v->lift_m ? entity_lift_m : NULL,
+                   .self = v,
+                   .ask_all = !skips(v->skips_off, SKIP_PART)};
 }
 
 static void parts_first(double *range_m, void *found, const TraceBlock *block, const void *self)
@@ -55,9 +52,17 @@ static void parts_first(double *range_m, void *found, const TraceBlock *block, c
     const uint64_t drawable = (uint64_t)(v->drawable - (among.hidden >= 0 && v->loose[among.hidden]));
     uint64_t       offered = 0, asked = 0;
     if (crowd) {
-        CrowdCounts counts = {0};
+        CrowdCounts       counts = {0};
+        const Crowd       entities = entity_crowd(v, block->rays->bent);
+        const EntityHits *known = among.known;
+        const CrowdAmong  some = {among.list,
+                                  among.count,
+                                  among.hidden,
+                                 known ? known->entity : -1,
+                                 known ? known->range_m : NULL,
+                                 known ? known->hit : NULL};
         order_rays(order, count, block->rays->columns);
-        crowd_first_hits(limit_m, of->entity, of->hit, &counts, block, order);
+        crowd_first_hits(limit_m, of->entity, of->hit, &counts, &entities, o, d, count, &some, order);
         asked = counts.asked;
         block->counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
         block->counters->skipped[SKIP_TREE] +=
@@ -141,22 +146,6 @@ static void parts_finish(Hits *hits, const int *list, int count, const void *fou
 
 /* ---- shadows ---------------------------------------------------------------------------------- */
 
-/* A sphere round the origins of a block's sun rays. */
-static double bound_points(double centre[3], int count, const double *const p[3])
-{
-    double square = 0;
-    for (int c = 0; c < 3; c++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int i = 0; i < count; i++) {
-            low = p[c][i] < low ? p[c][i] : low;
-            high = p[c][i] > high ? p[c][i] : high;
-        }
-        centre[c] = 0.5 * (low + high);
-        square += 0.25 * (high - low) * (high - low);
-    }
-    return sqrt(square) * (1 + 1e-9) + 1e-6;
-}
-
 /* Whether a ray along d from within a sphere can meet another. */
 static bool sphere_may_shadow(const PosedEntity *entity, const double centre[3], double radius_m, const double d[3])
 {
@@ -177,7 +166,7 @@ static void parts_any(const TraceShadow *s, const void *self)
     (void)self;
     for (int i = 0; i < s->count; i++) far_m[i] = INFINITY, in_turn[i] = i;
     double         centre[3];
-    const double   radius_m = bound_points(centre, s->count, s->o_enu);
+    const double   radius_m = rays_bound_origins(centre, s->count, s->o_enu);
     const uint64_t drawable = (uint64_t)v->drawable;
     uint64_t       offered = 0, asked = 0;
     int            near[crowd_least], nears = v->count;
@@ -185,7 +174,8 @@ static void parts_any(const TraceShadow *s, const void *self)
     if (by_tree) nears = broad_phase_swept(near, crowd_least, v->tree, centre, radius_m, s->way_enu);
     if (nears < 0) {
         CrowdCounts counts = {0};
-        crowd_any_hits(s->dark, &counts, v, s->count, s->o_enu, s->d_enu);
+        const Crowd entities = entity_crowd(v, false);
+        crowd_any_hits(s->dark, &counts, &entities, s->count, s->o_enu, s->d_enu);
         offered = asked = counts.asked;
         s->counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
     }

@@ -7,7 +7,7 @@
 
 #include "render/trace/ground/ground.h"
 #include "render/trace/parts/parts.h"
-#include "render/trace/visibility/broad_phase_private.h"
+#include "render/trace/visibility/crowd.h"
 #include "render/trace/visibility/trace_entry.h"
 #include "render/trace/visibility/visibility.h"
 
@@ -67,18 +67,6 @@ static inline double lift_for(const Visibility *v, const Rays *rays, int index)
     return rays->bent && v->lift_m ? v->lift_m[index] : 0;
 }
 
-/* Heights of the origins of listed rays over those of an entity that is raised; z_m: memory. */
-static inline const double *lowered(double *z_m, const double *oz_m, double lift_m, const int *list, int count)
-{
-    if (!(lift_m > 0)) return oz_m;
-    for (int n = 0; n < count; n++) z_m[list[n]] = oz_m[list[n]] - lift_m;
-    return z_m;
-}
-
-/* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. */
-void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
-                      const double *limit_m, const double centre[3], double radius_m);
-
 extern const TraceEntry trace_ground, trace_parts; /* self: NULL */
 /* The entity that a ray met, snapshot index + 1, of what trace_parts found. */
 uint32_t parts_found_entity(const void *found, int ray);
@@ -87,41 +75,5 @@ uint32_t parts_found_entity(const void *found, int ray);
 typedef struct RoundEarth RoundEarth;
 extern const TraceEntry   trace_beyond; /* self: RoundEarth */
 Status                    visibility_round_earth(Visibility *v, Arena *arena);
-
-/* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of block->among had
- * been tested one after the other. order: as of order_rays. */
-typedef struct CrowdCounts {
-    uint64_t asked, asked_nodes, nodes; /* ray-entity pairs, ray-node pairs; of the pairs' entities all nodes */
-} CrowdCounts;
-void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const TraceBlock *block,
-                      const int *order);
-/* dark becomes 1 where anything is met. */
-void crowd_any_hits(uint8_t *dark, CrowdCounts *counts, const Visibility *v, int count, const double *const o[3],
-                    const double *const d[3]);
-
-/* ---- rays of a block -------------------------------------------------------------------------- */
-
-/* Rays of a picture's rows in squares of 4 x 4, which are traced as a packet; others as they are. */
-static inline void order_rays(int order[hits_capacity], int count, int columns)
-{
-    const bool squares = columns > 1 && columns <= count && count % columns == 0;
-    const int  width = squares ? columns : count, height = squares ? count / columns : 1;
-    int        at = 0;
-    for (int y0 = 0; y0 < height; y0 += 4)
-        for (int x0 = 0; x0 < width; x0 += 4)
-            for (int y = y0; y < y0 + 4 && y < height; y++)
-                for (int x = x0; x < x0 + 4 && x < width; x++) order[at++] = y * width + x;
-}
-
-/* Indices of the active rays, in that order. */
-static inline int list_asked(int list[hits_capacity], const int order[hits_capacity], const uint8_t *ask, int count)
-{
-    int listed = 0;
-    for (int k = 0; k < count; k++) {
-        list[listed] = order[k];
-        listed += ask[order[k]] != 0;
-    }
-    return listed;
-}
 
 #endif

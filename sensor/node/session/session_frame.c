@@ -189,6 +189,10 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
         r->error = &f->error;
     r->target = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
     if (!r->target) return STATUS_NO_MEMORY;
+    const SceneryTracer *tracer = shared->world->scenery;
+    const Status         status = clutter_records(&r->clutter, &r->clutter_count, &seen->picture,
+                                          tracer ? scenery_tracer_of(tracer) : NULL, f->arena);
+    if (status != STATUS_OK) return status;
     r->ground_km2 = 1e-6 * truth_ground_area(shared->world, &f->request);
     return STATUS_OK;
 }

@@ -263,7 +263,10 @@ static void cast(void *user)
     heat_shadow_destroy(s->map);
     s->map = NULL;
     s->status = heat_shadow_create(
-        &s->map, &(ShadowOf){s->elevation, s->cell_m, s->slots, s->d_enu, groves, NULL, NULL, NULL}, s->pool);
+        &s->map,
+        &(ShadowOf){
+            .elevation = s->elevation, .cell_m = s->cell_m, .slots = s->slots, .d_enu = s->d_enu, .plants = groves},
+        s->pool);
     bench_keep(s->map);
 }
 
@@ -272,7 +275,7 @@ static void compare_shade(BenchSetting *point, const ShadeSet *a, const ShadeSet
                           double half_m)
 {
     enum { places = 20000 };
-    const HeatScene scene[2] = {{now, a->map, NULL}, {now, fine->map, NULL}};
+    const HeatScene scene[2] = {{.now = now, .shadow = a->map}, {.now = now, .shadow = fine->map}};
     double          sum = 0;
     for (int i = 0; i < places; i++) {
         const double p_enu[3] = {half_m * (2 * random_uniform(23, 0, 0, (uint64_t)i) - 1),

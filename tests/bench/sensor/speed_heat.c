@@ -61,7 +61,9 @@ static void cast(void *user)
     heat_shadow_destroy(c->map);
     c->map = NULL;
     c->status = heat_shadow_create(
-        &c->map, &(ShadowOf){c->elevation, config_default().heat.shadow_m, c->slots, c->d_enu, NULL, NULL, NULL, NULL},
+        &c->map,
+        &(ShadowOf){
+            .elevation = c->elevation, .cell_m = config_default().heat.shadow_m, .slots = c->slots, .d_enu = c->d_enu},
         c->pool);
     bench_keep(c->map);
 }
@@ -126,7 +128,7 @@ static void ask_ground(void *user)
 static void fill_hits(HitSet *s, const HeatNow *now, const ShadowMap *shadow, const Landscape *landscape,
                       const double half_m[2])
 {
-    s->scene = (HeatScene){now, shadow, NULL};
+    s->scene = (HeatScene){.now = now, .shadow = shadow};
     for (int i = 0; i < heat_hits; i++) { /* neighbours, as pixels of a row are */
         const double at_x = random_uniform(31, 0, 0, (uint64_t)(i / 64)),
                      at_y = random_uniform(31, 1, 0, (uint64_t)(i / 64));
