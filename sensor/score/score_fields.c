@@ -323,7 +323,7 @@ static const Field recogniser_rows[] = {
     {"confusion", "", "", "", "what targets were answered as; `false`: answers where nothing is",
      FIELD_OBJECT(confusion_rows)},
     {"on_clutter", "", "", "when there is none",
-     "false alarms on clutter (clutter[] of truth.jsonl): centres within its box or a pixel beside it; of several the "
+     "false alarms on clutter (clutter[] of truth.jsonl): centres within its box or 1 px beside it; of several the "
      "smallest",
      .unless_empty = true, FIELD_OBJECT(clutter_rows)},
     {"errors", "", "", "when nothing was found", "centroid and range", .in = errors_of, FIELD_OBJECT(errors_rows)},

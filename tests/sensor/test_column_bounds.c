@@ -6,6 +6,7 @@
 #include "entities/scenery/scenery_clutter.h"
 #include "entities/traces/effect_puffs.h"
 #include "pitviper_table.h"
+#include "render/heat/construction.h"
 #include "render/heat/given_heat.h"
 #include "render/heat/ground_column_private.h"
 #include "render/heat/part_table.h"
@@ -50,6 +51,20 @@ static Status read_ground_heat(const char *path)
 {
     static GroundKinds k;
     return ground_kinds_open(&k, path, &optical);
+}
+static Status read_constructions(const char *path)
+{
+    static Constructions c;
+    char                 layers[4096];
+    CHECK(etc_path(layers, sizeof layers, "construction_layers.csv"));
+    return constructions_open(&c, path, layers);
+}
+static Status read_layers(const char *path)
+{
+    static Constructions c;
+    char                 constructions[4096];
+    CHECK(etc_path(constructions, sizeof constructions, "constructions.csv"));
+    return constructions_open(&c, constructions, path);
 }
 static Status read_effects(const char *path)
 {
@@ -173,6 +188,8 @@ static const struct Reader {
     {"heat.csv", read_roles, NULL},
     {"heat_machines.csv", read_machines, NULL},
     {"ground_heat.csv", read_ground_heat, NULL},
+    {"constructions.csv", read_constructions, NULL},
+    {"construction_layers.csv", read_layers, NULL},
     {"ground_detail.csv", read_detail, NULL},
     {"effects.csv", read_effects, NULL},
     {"quality.csv", read_quality, NULL},
