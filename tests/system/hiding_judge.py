@@ -144,19 +144,18 @@ def context(out):
             here = features(image, box)
             if t['pixels'] <= 0 or here is None:
                 continue
-            want, best, other = plants_about(plant, box), 1, None
-            for _ in range(60):
+            want, others = plants_about(plant, box), []
+            for _ in range(200):
                 moved = box + numpy.tile(draw.uniform((-image.shape[1], -image.shape[0]), image.shape[::-1]), 2).round()
-                if features(image, moved) is None or occupied[numpy.logical_or(*rings(image.shape, moved))].any():
+                there = features(image, moved)
+                if there is None or occupied[numpy.logical_or(*rings(image.shape, moved))].any():
                     continue
-                off = abs(plants_about(plant, moved) - want)
-                if off < best:
-                    best, other = off, features(image, moved)
-            if other is None or best > 0.1:
-                continue
-            rows += [here, other]
-            labels += [1, 0]
-            groups += [number] * 2
+                others.append((abs(plants_about(plant, moved) - want), there))
+            others = [there for off, there in sorted(others, key=lambda o: o[0])[:5] if off <= 0.15]
+            if others:
+                rows += [here] + others
+                labels += [1] + [0] * len(others)
+                groups += [number] * (1 + len(others))
     rows, labels, groups = numpy.array(rows), numpy.array(labels), numpy.array(groups)
     score = numpy.zeros(len(labels))
     for fold in range(5):
@@ -166,14 +165,19 @@ def context(out):
         w = numpy.zeros(x.shape[1])
         for _ in range(400):
             p = 1 / (1 + numpy.exp(-x[learn] @ w))
-            w += 0.5 * (x[learn].T @ (labels[learn] - p) / learn.sum() - 0.01 * w)
+            even = numpy.where(labels[learn] == 1, (labels[learn] == 0).sum() / max((labels[learn] == 1).sum(), 1), 1)
+            w += 0.5 * (x[learn].T @ (even * (labels[learn] - p)) / even.sum() - 0.01 * w)
         score[judged] = x[judged] @ w
     rank = numpy.empty(len(score))
     rank[numpy.argsort(score, kind='stable')] = numpy.arange(1, len(score) + 1)
     ones = labels == 1
     area = (rank[ones].sum() - ones.sum() * (ones.sum() + 1) / 2) / (ones.sum() * (~ones).sum())
     print(f'places {ones.sum()}')
+    # Hanley and McNeil, Radiology 143 (1982)
+    q1, q2, n, m = area / (2 - area), 2 * area ** 2 / (1 + area), ones.sum(), (~ones).sum()
+    error = numpy.sqrt((area * (1 - area) + (n - 1) * (q1 - area ** 2) + (m - 1) * (q2 - area ** 2)) / (n * m))
     print(f'auc {area:.3f}')
+    print(f'auc_error {error:.3f}')
 
 
 {'about': about, 'planned': planned, 'context': context}[sys.argv[1]](pathlib.Path(sys.argv[2]))
