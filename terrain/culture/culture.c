@@ -132,14 +132,35 @@ static int thin_out(double (*p)[2], int n)
 /* Whether a height over the ground is one that anything built has. */
 static bool is_height(float m) { return m > 0 && m <= culture_highest_m; }
 
+static const double least_m2 = 1; /* of an outline */
+
+/* Whether the numbers of a record are in their ranges; of a building or line its corners are another matter. */
+static bool is_building(const Building *b)
+{
+    return isfinite(b->base_m) && is_height(b->eaves_m) && is_height(b->ridge_m) && b->ridge_m >= b->eaves_m &&
+           isfinite(b->ridge_rad) && b->use < BUILDING_USES && b->roof < ROOF_SHAPES && b->wall_fabric < FABRICS &&
+           b->roof_fabric < FABRICS && b->damage <= 3;
+}
+
+static bool is_line(const CultureLine *l)
+{
+    return l->width_m >= 0 && l->width_m <= culture_widest_m && l->height_m >= 0 && l->height_m <= culture_highest_m &&
+           l->kind < CULTURE_LINE_KINDS;
+}
+
+static bool is_point(const CulturePoint *p)
+{
+    const float *s = p->size_m;
+    return is_place(p->x_m, p->y_m) && isfinite(p->base_m) && isfinite(p->heading_rad) && s[0] > 0 &&
+           s[0] <= culture_widest_m && s[1] > 0 && s[1] <= culture_widest_m && is_height(s[2]) &&
+           p->kind < CULTURE_POINT_KINDS;
+}
+
+static bool is_tree(const CultureTree *t) { return is_place(t->x_m, t->y_m) && t->height_m >= 0 && t->height_m <= 200; }
+
 Status culture_add_building(Culture *c, const Building *building, const double (*corner_m)[2], int corners)
 {
-    static const double least_m2 = 1;
-    if (corners < 3 || corners > culture_outline_most || !are_places(corner_m, corners) ||
-        !isfinite(building->base_m) || !is_height(building->eaves_m) || !is_height(building->ridge_m) ||
-        building->ridge_m < building->eaves_m || !isfinite(building->ridge_rad) || building->use >= BUILDING_USES ||
-        building->roof >= ROOF_SHAPES || building->wall_fabric >= FABRICS || building->roof_fabric >= FABRICS ||
-        building->damage > 3) {
+    if (corners < 3 || corners > culture_outline_most || !are_places(corner_m, corners) || !is_building(building)) {
         c->left_out++;
         return STATUS_OK;
     }
@@ -168,9 +189,7 @@ Status culture_add_building(Culture *c, const Building *building, const double (
 
 Status culture_add_line(Culture *c, const CultureLine *line, const double (*corner_m)[2], int corners)
 {
-    if (corners < 2 || corners > culture_outline_most || !are_places(corner_m, corners) ||
-        !(line->width_m >= 0 && line->width_m <= culture_widest_m) ||
-        !(line->height_m >= 0 && line->height_m <= culture_highest_m) || line->kind >= CULTURE_LINE_KINDS) {
+    if (corners < 2 || corners > culture_outline_most || !are_places(corner_m, corners) || !is_line(line)) {
         c->left_out++;
         return STATUS_OK;
     }
@@ -187,10 +206,7 @@ Status culture_add_line(Culture *c, const CultureLine *line, const double (*corn
 
 Status culture_add_point(Culture *c, const CulturePoint *point)
 {
-    const float *s = point->size_m;
-    if (!is_place(point->x_m, point->y_m) || !isfinite(point->base_m) || !isfinite(point->heading_rad) ||
-        !(s[0] > 0 && s[0] <= culture_widest_m && s[1] > 0 && s[1] <= culture_widest_m) || !is_height(s[2]) ||
-        point->kind >= CULTURE_POINT_KINDS) {
+    if (!is_point(point)) {
         c->left_out++;
         return STATUS_OK;
     }
@@ -201,13 +217,42 @@ Status culture_add_point(Culture *c, const CulturePoint *point)
 
 Status culture_add_tree(Culture *c, const CultureTree *tree)
 {
-    if (!is_place(tree->x_m, tree->y_m) || !(tree->height_m >= 0 && tree->height_m <= 200)) {
+    if (!is_tree(tree)) {
         c->left_out++;
         return STATUS_OK;
     }
     const Status status = grow_records(c, &c->tree, 4, sizeof *c->tree, c->trees);
     if (status == STATUS_OK) c->tree[c->trees++] = *tree;
     return status;
+}
+
+/* ---- records from elsewhere ---------------------------------------------------------------------- */
+
+static const double (*corners_of(const Culture *c, int first, int count, int least))[2]
+{
+    const bool there = first >= 0 && count >= least && count <= culture_outline_most && first <= c->corners - count;
+    const double(*p)[2] = there ? (const double(*)[2])c->corner_m + first : NULL;
+    return p && are_places(p, count) ? p : NULL;
+}
+
+const char *culture_fault(const Culture *c)
+{
+    if (c->corners > culture_most_corners || c->buildings > culture_most_records || c->lines > culture_most_records ||
+        c->points > culture_most_records || c->trees > culture_most_records)
+        return "numbers of records of culture";
+    for (int n = 0; n < c->buildings; n++) {
+        const Building *b = &c->building[n];
+        const double(*p)[2] = corners_of(c, b->first_corner, b->corners, 3);
+        if (!p || !is_building(b)) return "a building";
+        if (!(culture_area_m2(p, b->corners) >= least_m2) || crosses_itself(p, b->corners)) return "outline of a building";
+    }
+    for (int n = 0; n < c->lines; n++)
+        if (!corners_of(c, c->line[n].first_corner, c->line[n].corners, 2) || !is_line(&c->line[n])) return "a line";
+    for (int n = 0; n < c->points; n++)
+        if (!is_point(&c->point[n])) return "a point of culture";
+    for (int n = 0; n < c->trees; n++)
+        if (!is_tree(&c->tree[n])) return "a tree of culture";
+    return NULL;
 }
 
 /* ---- keys --------------------------------------------------------------------------------------- */

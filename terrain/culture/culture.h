@@ -138,6 +138,9 @@ Status culture_add_line(Culture *culture, const CultureLine *line, const double 
 Status culture_add_point(Culture *culture, const CulturePoint *point);
 Status culture_add_tree(Culture *culture, const CultureTree *tree);
 
+/* Of records that were filled in elsewhere: which of them is not as culture_add_* leaves it; NULL: all are. */
+const char *culture_fault(const Culture *culture);
+
 /* ---- look-ups by place, after culture_index ----------------------------------------------------- */
 
 /* Some 12 octets a cell that a record reaches into; its cells grow until that is at most 100 MB and 96 octets for each

@@ -218,7 +218,7 @@ def check_named(tree, documents, there):
 # Settings (lists of pitviper_settings.h): what is chosen among words is a CHOICE or a SWITCH, an enum or a bool, so that nothing compares
 # words. Texts of any content that have a word of their own as well:
 ENTRY = re.compile(r'\bROW\((\w+), (\w*)\.?, (\w+),')
-WORDS_OF_TEXTS = {'sensor.preset', 'radar.preset', 'sensor.mount', 'exercise.host', 'weather.day'}
+WORDS_OF_TEXTS = {'sensor.preset', 'radar.preset', 'sensor.mount', 'exercise.host', 'weather.day', 'terrain.buildings'}
 
 
 def check_choices(tree):

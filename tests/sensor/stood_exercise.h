@@ -92,13 +92,14 @@ static inline Status stood_ground(Landscape *out, GroundContact *contact, Choice
 static inline Status stood_woods(WoodsChoice *out, Choices *choices, const Exercise *e, const Config *config,
                                  const HostPlan *plan, const Landscape *land)
 {
-    GroundEvidence *evidence = NULL;
-    WoodsSquare     square;
+    static const Culture nothing;
+    GroundEvidence      *evidence = NULL;
+    WoodsSquare          square;
     Status          status = choice_evidence(&evidence, &e->survey, catalog, &land->frame);
     if (status == STATUS_OK) status = choice_square(&square, &e->survey, config, &land->frame, plan);
     if (status == STATUS_OK)
         status = choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence, NULL, NULL}, &square,
-                              land, NULL);
+                              land, &nothing, NULL);
     choice_evidence_free(evidence);
     return status;
 }

@@ -6,11 +6,10 @@
 
 #include "entities/catalog/catalog.h"
 #include "entities/survey/survey.h"
+#include "sensor/frame/frame_scenery.h"
 #include "sensor/settings/config.h"
 #include "pitviper_sha256.h"
 #include "terrain/ground/landscape.h"
-#include "entities/scenery/scenery.h"
-#include "terrain/culture/culture.h"
 #include "terrain/woods/woods.h"
 
 /* ---- host and aim ------------------------------------------------------------------------------------- */
@@ -144,14 +143,9 @@ void   choice_woods_free(WoodsChoice *woods);
 
 /* ---- what people built, and clutter -------------------------------------------------------------------- */
 
-/* Of the same square: terrain.buildings, terrain.clutter. */
-typedef struct SceneryChoice {
-    Culture culture; /* indexed; empty: nothing is built */
-    Scenery scenery;
-} SceneryChoice;
-/* basis->evidence is not used. choice_scenery_free after success and failure. */
-Status choice_scenery(SceneryChoice *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
+/* Of the same square: terrain.buildings, terrain.trees, terrain.clutter. basis->evidence is not used.
+ * frame_scenery_free after success and failure. */
+Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
                       const Landscape *landscape);
-void   choice_scenery_free(SceneryChoice *scenery);
 
 #endif

@@ -394,7 +394,8 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .save = o->save,
                                   .several = o->host_count > 1,
                                   .isa = o->isa,
-                                  .woods = made->woods.on ? &made->woods.config : NULL};
+                                  .woods = made->woods.on ? &made->woods.config : NULL,
+                                  .scenery = &made->scenery};
     const FrameGrid     grid = grid_of(&chosen.plan);
     status = session_open(&session, &shared, &chosen.plan, player, out);
     if (status != STATUS_OK) goto done;

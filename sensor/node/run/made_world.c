@@ -61,7 +61,7 @@ static void take_down(MadeWorld *m, MadeLayer layer)
         break;
     case MADE_CULTURE:
         if (m->scenery.culture.index) culture_lay(&m->landscape, NULL);
-        choice_scenery_free(&m->scenery);
+        frame_scenery_free(&m->scenery);
         break;
     case MADE_WOODS:
         choice_woods_free(&m->woods);

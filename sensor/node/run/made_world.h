@@ -40,7 +40,7 @@ typedef struct MadeWorld {
     Catalog      *catalog;
     Landscape     landscape;
     GroundContact contact;
-    SceneryChoice scenery;
+    FrameScenery  scenery;
     WoodsChoice   woods;
     World         world;
     Config        part[MADE_LAYERS];                  /* the settings that a layer was made by */

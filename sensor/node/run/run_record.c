@@ -291,6 +291,8 @@ static const Field run_rows[] = {
      FIELD_GET("list of integers", frame_numbers)},
     {"woods", "", "", "with terrain.woods off", "plants that stand on the ground", .in = woods_of,
      FIELD_OBJECT(woods_rows)},
+    {"scenery", "", "", "with none of terrain.buildings, terrain.trees and terrain.clutter",
+     "what stands in the world and is no entity", .in = run_scenery_of, .type = "object", .rows = &run_scenery_fields},
     {"materials", "", "", "", "names of the materials: the k-th, from 1, is value k of the material planes",
      FIELD_GET("list of strings", materials)},
     {"counters", "", "", "", "over the whole run", .type = "object", .rows = &run_counter_fields},
@@ -346,6 +348,7 @@ Status run_write(const Run *run, const RunEnd *end)
         log_error("%s: out of memory for run.json", name);
         return STATUS_NO_MEMORY;
     }
+    run_count_scenery(&record);
     for (int i = 0; i < session_stages; i++)
         log_detail("%s: %s: %.3g ms a frame (median; 95 %%: %.3g; most: %.3g)", name, session_stage_name[i],
                    record.stage[i].median_ms, record.stage[i].p95_ms, record.stage[i].max_ms);

@@ -1,4 +1,5 @@
-/* sensor/node/run/run_record_private.h: what run.json is made from: run_record.c, and its counters: run_counters.c. */
+/* sensor/node/run/run_record_private.h: what run.json is made from: run_record.c, its counters:
+ * run_counters.c, what stands in the world: run_scenery.c. */
 #ifndef SENSOR_NODE_RUN_RUN_RECORD_PRIVATE_H
 #define SENSOR_NODE_RUN_RUN_RECORD_PRIVATE_H
 
@@ -15,9 +16,14 @@ typedef struct RunRecord {
     const RunEnd *end;
     const char   *memory; /* name of the ring of frames; NULL: none */
     StageTimes    stage[session_stages];
+    bool          has_scenery; /* terrain.buildings, terrain.trees or terrain.clutter are on */
+    SceneryCounts scenery;
 } RunRecord;
 
 extern const FieldTable run_counter_fields;
+extern const FieldTable run_scenery_fields;            /* run_scenery.c */
+const void             *run_scenery_of(const void *of); /* of a RunRecord; NULL: there is none */
+void                    run_count_scenery(RunRecord *record);
 
 static inline const Config *run_config_of(const RunRecord *r) { return &r->run->options.config; }
 static inline const void   *run_of_record(const void *of) { return ((const RunRecord *)of)->run; }

@@ -37,6 +37,7 @@ typedef struct SessionShared {
     int                save_count;              /* frames that are also written as frame files, ascending */
     const int         *save;                    /* [save_count] */
     const WoodsConfig *woods;                   /* of the world's plants; NULL: none */
+    const FrameScenery *scenery;                /* what stands there; may be empty */
     const char        *isa;                     /* as tracer_create */
     void (*note)(void *user, const char *text); /* into the live recording; NULL: there is none; user: as above */
     const char *notes;                          /* of the recording that is played, DisLog.notes; NULL: none */

@@ -224,7 +224,8 @@ static Status save_frame(const Session *s, const Frame *f, const Eye *eye)
     for (int i = 0; i < shared->save_count; i++)
         if (shared->save[i] == f->number)
             return frame_save(&(FrameSave){f, shared->config, s->out, &eye->state, shared->unix_s,
-                                           shared->contact == GROUND_CONTACT_ALL, shared->pool, shared->woods});
+                                           shared->contact == GROUND_CONTACT_ALL, shared->pool, shared->woods,
+                                           shared->scenery});
     return STATUS_OK;
 }
 

@@ -11,7 +11,7 @@
 
 #include "pitviper.h"
 
-enum { chunk_name_size = 8, chunks_version = 9 };
+enum { chunk_name_size = 8, chunks_version = 10 };
 static const uint64_t chunk_most_octets = (uint64_t)1 << 30;
 
 /* ---- writing: a growing buffer ------------------------------------------------------------------ */

@@ -23,13 +23,25 @@ static Status write_settings(char **text, const Config *config)
     Config plain = *config;
     size_t octets;
     *plain.terrain.elevation = *plain.terrain.cover = *plain.terrain.cover_table = *plain.terrain.orthophoto = 0;
-    *plain.terrain.store = *plain.terrain.place = 0;
+    *plain.terrain.store = *plain.terrain.place = *plain.terrain.trees = 0;
+    if (strcmp(plain.terrain.buildings, "invented") != 0)
+        snprintf(plain.terrain.buildings, sizeof plain.terrain.buildings, "off");
     *plain.terrain.geoid = *plain.record.path = *plain.quality.table = 0;
     FILE *to = open_memstream(text, &octets);
     if (!to) return STATUS_NO_MEMORY;
     config_write_settings(to, &plain);
     const bool whole = !ferror(to);
     return fclose(to) == 0 && whole ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+static Status gather_scenery(SavedFrame *file, const FrameScenery *scenery)
+{
+    SavedScenery *to = &file->scenery;
+    file->built = scenery && (scenery->culture.index || scenery->scenery.objects > 0);
+    if (!file->built) return STATUS_OK;
+    *to = (SavedScenery){.plan = scenery->plan, .objects = scenery->scenery.objects};
+    if (to->plan.from == CULTURE_FROM_RECORDS) to->culture = scenery->culture;
+    return saved_scenery_sha256(to->sha256, &scenery->scenery);
 }
 
 /* Lists each model of the snapshot once. */
@@ -96,7 +108,8 @@ static Status gather(SavedFrame *file, SavedMade *made, char **settings, const F
     file->planted = save->woods != NULL;
     if (file->planted) file->woods = *save->woods;
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    Status status = saved_tables(&file->tables, save->config, catalog);
+    Status status = gather_scenery(file, save->scenery);
+    if (status == STATUS_OK) status = saved_tables(&file->tables, save->config, catalog);
     if (status == STATUS_OK) status = write_settings(settings, save->config);
     if (status == STATUS_OK) status = pose_nodes(file, &joint, f->world->catalog, arena);
     if (status == STATUS_OK) status = list_models(file, f->world->catalog, arena);
@@ -155,19 +168,23 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Se
     Landscape         landscape = {0};
     World             world = {0};
     Woods             woods = {0};
+    FrameScenery      scenery = {0};
     const SavedStage  stage = {&file, &file.snapshot, &world, save->config, save->pool, arena};
     char              follows[saved_follows_size];
     *same = false;
     if (!again) return STATUS_NO_MEMORY;
     Status status = saved_frame_parse(&file, bytes->bytes, bytes->count, "the file just made", arena);
     if (status == STATUS_OK) status = saved_ground_open(&landscape, &file.ground);
+    if (status == STATUS_OK) status = saved_scenery_make(&scenery, &landscape, &file, false);
     if (status == STATUS_OK)
         status = frame_world(&world, save->config, f->world->catalog, &landscape, &file.ground.frame, "avx2");
     if (status == STATUS_OK) {
         world_keep(&world, f->world->cache);
-        status = saved_ground_plant(&world, &woods, &file, save->config,
+        status = saved_ground_plant(&world, &woods, &file, &scenery.culture, save->config,
                                     saved_follows(follows, &file, &file.tables) ? follows : NULL, "avx2", save->pool);
     }
+    if (status == STATUS_OK && scenery.scenery.objects > 0)
+        status = world_scenery(&world, &scenery.scenery, "avx2", save->pool);
     if (status == STATUS_OK) status = frame_world_warm(&world, save->config, file.unix_s, save->pool);
     if (status == STATUS_OK) {
         file.snapshot.effect_table = f->seen.snapshot.effect_table;
@@ -181,6 +198,7 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Se
     }
     world_close(&world);
     woods_destroy(&woods);
+    frame_scenery_free(&scenery);
     landscape_destroy(&landscape);
     return status;
 }
@@ -199,8 +217,9 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const SavedFrame *fi
     if (status == STATUS_OK && file->measured)
         status = radar_open(&radar, save->config, "avx2", false, save->frame->world->cache);
     if (save->frame->world->forest) forest_keep_found(save->frame->world->forest); /* what the frame found is there */
-    /* where plants stand follows from all of the ground */
-    const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store) && !file->planted;
+    /* where plants and clutter stand, and how far walls reach down, follows from all of the ground */
+    const bool whole = file->planted || file->built;
+    const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store) && !whole;
     if (status == STATUS_OK && cut) status = gather_places(&kept, save->frame, gathered);
     for (size_t r = 0; r < sizeof reaches_m / sizeof *reaches_m && status == STATUS_OK && !same; r++) {
         if (!cut && isfinite(reaches_m[r][0])) continue;

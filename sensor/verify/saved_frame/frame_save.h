@@ -15,6 +15,7 @@ typedef struct FrameSave {
     bool               all_on_ground;
     Pool              *pool;
     const WoodsConfig *woods; /* of the world's plants; NULL: none */
+    const FrameScenery *scenery; /* that of the world; NULL: none */
 } FrameSave;
 
 /* Writes a frame file after rendering it again from its own octets to the same bits; with terrain from files it

@@ -273,6 +273,7 @@ void saved_fields_request(Fields *f, SavedFrame *file)
     if (f->version >= 9) field_real(f, "ground in the image", &km2, -1, 1e6);
     else km2 = -1;
     file->ground_km2 = km2 >= 0 ? km2 : NAN;
+    if (f->version >= 10) field_real(f, "time of the request", &r->t_s, -long_s, long_s);
 }
 
 /* ---- plants -------------------------------------------------------------------------------------- */

@@ -15,6 +15,7 @@ static bool has_marks(const SavedFrame *file)
 }
 
 static bool has_woods(const SavedFrame *file) { return file->planted; }
+static bool has_scenery(const SavedFrame *file) { return file->built; }
 static bool has_radar(const SavedFrame *file) { return file->measured; }
 static bool has_coarse(const SavedFrame *file) { return file->measured && file->radar.coarse; }
 
@@ -28,6 +29,7 @@ static const struct Chunk {
     {"snapshot", saved_fields_snapshot, NULL}, {"request", saved_fields_request, NULL},
     {"planes", saved_fields_planes, NULL},     {"ground", NULL, NULL},
     {"woods", saved_fields_woods, has_woods},  {"marks", saved_fields_marks, has_marks},
+    {"scenery", saved_fields_scenery, has_scenery},
     {"radar", saved_fields_radar, has_radar},  {"coarse", saved_fields_coarse, has_coarse},
 };
 enum { chunk_kinds = sizeof chunks / sizeof *chunks };

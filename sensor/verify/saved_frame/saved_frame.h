@@ -9,6 +9,7 @@
 
 #include "entities/catalog/catalog.h"
 #include "sensor/frame/frame.h"
+#include "sensor/frame/frame_scenery.h"
 #include "sensor/frame/plane.h"
 #include "sensor/settings/tables_used.h"
 #include "sensor/truth/truth.h"
@@ -45,6 +46,15 @@ typedef struct SavedRadar {
     bool     coarse;     /* with coarse signatures */
 } SavedRadar;
 
+/* What scenery follows from. Its heat is not kept: it follows from scenery, weather and time, whatever frames were
+ * rendered before (render/heat/scenery_heat.h). */
+typedef struct SavedScenery {
+    SceneryPlan plan;
+    Culture     culture; /* CULTURE_FROM_RECORDS: as it came from files, not indexed */
+    int         objects; /* of the scenery made of it, and its hash, by which a difference is noticed: */
+    char        sha256[sha256_text_size];
+} SavedScenery;
+
 typedef struct SavedFrame {
     const char    *version, *host, *config_sha256; /* of the program; of the frame */
     const char    *settings;                       /* YAML as config_read accepts it; without terrain files */
@@ -64,6 +74,8 @@ typedef struct SavedFrame {
     char           ground_sha256[sha256_text_size]; /* of the octets that were read as the ground */
     bool           planted;                         /* the ground has plants, grown again from: */
     WoodsConfig    woods;                           /* its store is the ground's */
+    bool           built;                           /* the world has scenery, made again from: */
+    SavedScenery   scenery;
     bool           measured;                        /* a radar did: */
     SavedRadar     radar;
     char           frame_sha256[sha256_text_size];
@@ -81,5 +93,7 @@ Status saved_frame_parse(SavedFrame *out, const uint8_t *bytes, size_t count, co
 
 /* Hashes the nodes, parts and facets of a model. */
 Status saved_model_sha256(char out[sha256_text_size], const Model *model);
+/* Hashes the models of a scenery, its objects, states and movers. */
+Status saved_scenery_sha256(char out[sha256_text_size], const Scenery *scenery);
 
 #endif

@@ -19,8 +19,12 @@ void saved_fields_request(Fields *f, SavedFrame *file);
 void saved_fields_ground(Fields *f, SavedFrame *file, const GroundCutout *kept);
 void saved_fields_marks(Fields *f, SavedFrame *file);
 void saved_fields_woods(Fields *f, SavedFrame *file);
+void saved_fields_scenery(Fields *f, SavedFrame *file);
 void saved_fields_radar(Fields *f, SavedFrame *file);
 void saved_fields_coarse(Fields *f, SavedFrame *file);
 void saved_fields_planes(Fields *f, SavedFrame *file);
+
+/* Logs what is not as it was where the frame was made: forced as a warning, else as an error that names --force. */
+void saved_say(bool forced, const char *name, const char *what);
 
 #endif

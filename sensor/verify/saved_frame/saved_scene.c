@@ -1,6 +1,7 @@
 /* sensor/verify/saved_frame/saved_scene.c: what a frame file needs from this installation: tables, ground, plants,
  * models, sensors. */
 #include "sensor/verify/saved_frame/saved_scene.h"
+#include "sensor/verify/saved_frame/saved_frame_private.h"
 #include "sensor/frame/frame_world.h"
 #include "terrain/store/store.h"
 #include "pitviper_output.h"
@@ -71,11 +72,12 @@ bool saved_follows(char out[saved_follows_size], const SavedFrame *file, const T
     return digest && sha256_end(out + strlen(out), digest, good) == STATUS_OK;
 }
 
-Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Config *config, const char *follows,
-                          const char *isa, Pool *pool)
+Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Culture *culture,
+                          const Config *config, const char *follows, const char *isa, Pool *pool)
 {
     WoodsConfig how = file->woods;
     if (!file->planted) return STATUS_OK;
+    how.culture = culture->index ? culture : NULL;
     how.store = file->ground.store && *file->ground.store ? file->ground.store : NULL;
     how.cache = how.store ? NULL : world->cache, how.follows = follows;
     const Status status = woods_create(woods, world->landscape, &how, pool);
@@ -138,7 +140,7 @@ static const TableUsed *table_named(const TablesUsed *tables, const char *name)
     return NULL;
 }
 
-static void say(bool forced, const char *name, const char *what)
+void saved_say(bool forced, const char *name, const char *what)
 {
     if (forced) log_warn("frame: %s %s", name, what);
     else log_error("frame: %s %s; the frame cannot be the same. --force renders it with what is here", name, what);
@@ -151,12 +153,12 @@ static int compare_tables(const TablesUsed *was, const TablesUsed *is, bool forc
         const TableUsed *here = table_named(is, was->table[i].name);
         if (here && strcmp(here->sha256, was->table[i].sha256) == 0) continue;
         differ++;
-        say(forced, was->table[i].name, here ? "is not the table that the frame was made with" : "is not here");
+        saved_say(forced, was->table[i].name, here ? "is not the table that the frame was made with" : "is not here");
     }
     for (int i = 0; i < is->count; i++) {
         if (table_named(was, is->table[i].name)) continue;
         differ++;
-        say(forced, is->table[i].name, "is here, and was not where the frame was made");
+        saved_say(forced, is->table[i].name, "is here, and was not where the frame was made");
     }
     return differ;
 }
@@ -183,7 +185,7 @@ static Status take_models(SavedScene *s, const SavedFrame *file, bool forced)
         const Model *model = catalog_model(s->catalog, here);
         status = saved_model_sha256(sha256, model);
         const bool same = status == STATUS_OK && here == was->model && strcmp(sha256, was->sha256) == 0;
-        if (!same) say(forced, was->name, "is not the model that the frame was made with");
+        if (!same) saved_say(forced, was->name, "is not the model that the frame was made with");
         fits &= model->node_count == was->node_count && (same || forced) && here == was->model;
     }
     if (status == STATUS_OK && !fits) {
@@ -212,12 +214,15 @@ Status saved_scene_open(SavedScene *s, const SavedFrame *file, bool forced, cons
     if (status == STATUS_OK) status = take_models(s, file, forced);
     if (status == STATUS_OK) status = effect_table_open(&s->effects, effects);
     if (status == STATUS_OK) status = saved_ground_open(&s->landscape, &file->ground);
+    if (status == STATUS_OK) status = saved_scenery_make(&s->scenery, &s->landscape, file, forced);
     if (status == STATUS_OK)
         status = frame_world(&s->world, &s->config, s->catalog, &s->landscape, &file->ground.frame, isa);
     if (status == STATUS_OK) world_keep(&s->world, s->cache = frame_world_cache(&s->config));
     if (status == STATUS_OK)
-        status = saved_ground_plant(&s->world, &s->woods, file, &s->config,
+        status = saved_ground_plant(&s->world, &s->woods, file, &s->scenery.culture, &s->config,
                                     saved_follows(follows, file, &here) ? follows : NULL, isa, pool);
+    if (status == STATUS_OK && s->scenery.scenery.objects > 0)
+        status = world_scenery(&s->world, &s->scenery.scenery, isa, pool);
     if (status == STATUS_OK) status = frame_world_warm(&s->world, &s->config, file->unix_s, pool);
     s->snapshot.effect_table = &s->effects;
     return status;
@@ -227,6 +232,7 @@ void saved_scene_close(SavedScene *s)
 {
     world_close(&s->world);
     woods_destroy(&s->woods);
+    frame_scenery_free(&s->scenery);
     landscape_destroy(&s->landscape);
     catalog_close(s->catalog);
     cache_close(s->cache);

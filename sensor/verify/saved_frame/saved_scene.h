@@ -14,6 +14,7 @@ typedef struct SavedScene {
     Sensors     sensors;
     Catalog    *catalog;
     Landscape   landscape;
+    FrameScenery scenery;
     Woods       woods; /* of the world's plants, if any */
     World       world;
     EffectTable effects;
@@ -30,11 +31,14 @@ void   saved_scene_close(SavedScene *scene);
 
 /* Parts may be of a hostile file. Failures are logged. */
 Status saved_ground_open(Landscape *out, const LandscapeParts *parts);
+/* What stands on it, made of a file's records and the ground; nothing for a file without. The culture is laid on the
+ * landscape. frame_scenery_free after success and failure. forced: what is not that of the frame is a warning. */
+Status saved_scenery_make(FrameScenery *out, Landscape *landscape, const SavedFrame *file, bool forced);
 /* The plants on it, into a world over that ground; nothing for a file without. They are taken from the world's cache
- * where that has them; follows: what the landscape and the tables follow from, NULL: not known. woods must outlive the
- * world, and is destroyed by the caller, also on failure. */
-Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Config *config, const char *follows,
-                          const char *isa, Pool *pool);
+ * where that has them; follows: what the landscape and the tables follow from, NULL: not known. culture: of the file.
+ * woods must outlive the world, and is destroyed by the caller, also on failure. */
+Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Culture *culture,
+                          const Config *config, const char *follows, const char *isa, Pool *pool);
 /* What its landscape and tables follow from, for saved_ground_plant. False: there is no memory. */
 enum { saved_follows_size = 2 * sha256_text_size };
 bool saved_follows(char out[saved_follows_size], const SavedFrame *file, const TablesUsed *tables);

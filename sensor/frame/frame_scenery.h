@@ -1,0 +1,49 @@
+/* sensor/frame/frame_scenery.h: what stands in a frame's world (buildings, works, clutter), made from all that it
+ * follows from: by the choices of a run, and again by a frame file. */
+#ifndef SENSOR_FRAME_FRAME_SCENERY_H
+#define SENSOR_FRAME_FRAME_SCENERY_H
+
+#include "entities/scenery/scenery.h"
+#include "entities/scenery/scenery_clutter.h"
+#include "terrain/culture/culture.h"
+#include "terrain/culture/culture_invented.h"
+
+typedef enum CultureFrom {
+    CULTURE_FROM_NOTHING,
+    CULTURE_FROM_SEED,    /* invented: SceneryPlan.invented */
+    CULTURE_FROM_RECORDS, /* of files: FrameScenery.culture is given */
+    CULTURE_FROMS
+} CultureFrom;
+
+/* With landscape, records and tables: all that scenery follows from. */
+typedef struct SceneryPlan {
+    CultureFrom   from;
+    CultureConfig invented;
+    double        clutter; /* times the density of etc/clutter.csv; 0: none */
+    uint64_t      clutter_seed;
+    double        south_west_m[2], north_east_m[2]; /* ENU: where clutter stands */
+} SceneryPlan;
+
+typedef struct FrameScenery {
+    SceneryPlan plan;
+    Culture     culture; /* indexed; empty: nothing is built */
+    Scenery     scenery;
+} FrameScenery;
+
+/* Makes the scenery of a plan, and its culture unless that is given, over a landscape on which no culture is laid yet.
+ * The same plan, records and landscape give the same bits. frame_scenery_free after success and failure. */
+Status frame_scenery_make(FrameScenery *out, const SceneryPlan *plan, const Landscape *landscape);
+void   frame_scenery_free(FrameScenery *scenery); /* accepts zeroes */
+/* ENU z of a landscape, for what asks for the ground; user: the landscape. */
+double frame_scenery_ground(void *user, double x_m, double y_m);
+
+/* What there is of each. */
+typedef struct SceneryCounts {
+    int objects, models, driving;
+    int cells;                           /* objects that are pieces of ground with all that is built there */
+    int buildings, lines, points, trees; /* records of culture */
+    int clutter, of_class[CLUTTER_CLASSES];
+} SceneryCounts;
+void frame_scenery_count(SceneryCounts *out, const FrameScenery *scenery);
+
+#endif
