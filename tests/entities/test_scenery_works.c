@@ -192,12 +192,40 @@ static void points_have_their_sizes(void **state)
         }
 }
 
+/* More parts than one model should have: several models at one place. */
+static void a_crowded_cell_is_several_models(void **state)
+{
+    (void)state;
+    enum { poles = 40000 };
+    Culture c = {0};
+    Scenery s = {0};
+    for (int k = 0; k < poles; k++) {
+        const CulturePoint p = {.id = (uint64_t)k + 1,
+                                .x_m = 0.5 * (k % 200) + 1,
+                                .y_m = 0.5 * (k / 200) + 1,
+                                .size_m = {0.2F, 0.2F, 5},
+                                .kind = CULTURE_POLE};
+        CHECK(culture_add_point(&c, &p) == STATUS_OK);
+    }
+    CHECK(scenery_add_buildings(&s, &c, NULL, NULL) == STATUS_OK);
+    assert_int_equal(s.models, 3);
+    int parts = 0;
+    for (int k = 0; k < 3; k++) {
+        for (int q = 0; q < s.model[k].part_count; q++) CHECK(s.part_of[s.part_first[k] + q] == (uint64_t)++parts);
+        CHECK(s.object[k].p_enu[0] == 64 && s.object[k].p_enu[1] == 64);
+        CHECK(k == 0 || s.object[k].id != s.object[k - 1].id);
+    }
+    assert_int_equal(parts, poles);
+    scenery_free(&s), culture_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_of_line_is_closed), cmocka_unit_test(a_wall_has_its_volume),
-        cmocka_unit_test(fences_follow_the_ground),     cmocka_unit_test(wires_sag),
-        cmocka_unit_test(a_bridge_crosses_the_valley),  cmocka_unit_test(points_have_their_sizes),
+        cmocka_unit_test(every_kind_of_line_is_closed),     cmocka_unit_test(a_wall_has_its_volume),
+        cmocka_unit_test(fences_follow_the_ground),         cmocka_unit_test(wires_sag),
+        cmocka_unit_test(a_bridge_crosses_the_valley),      cmocka_unit_test(points_have_their_sizes),
+        cmocka_unit_test(a_crowded_cell_is_several_models),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
