@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 enum {
-    parts_enough = 60000, /* a cell with more is several models */
+    parts_enough = 16384, /* a cell with more is several models */
     triangles_enough = 4000000,
     triangles_most = 1 << 27, /* of all cells: some 9 GB */
     items_most = 1 << 25,     /* buildings, points and pieces of lines */

@@ -67,7 +67,8 @@ static void eaves_and_ridge_are_exact(void **state)
             CHECK_NEAR(height_over(&s, "roof", 16, 12), 105.5 + 3.5 * 6 / 12.4, 1e-5);
         }
         if (roof == ROOF_FLAT) CHECK_NEAR(middle_m, 105.5, 1e-5);
-        if (roof == ROOF_FLAT) CHECK_NEAR(highest(&s, "wall"), 109, 1e-5); /* its parapet */
+        if (roof == ROOF_FLAT) CHECK_NEAR(highest(&s, "wall"), 109, 1e-5); /* its parapet, 0.25 m thick */
+        if (roof == ROOF_FLAT) CHECK_NEAR(covered_m2(NULL, &s, "roof", 0), (12 - 0.5) * (8 - 0.5), 1e-6);
         scenery_free(&s);
     }
 }
@@ -107,6 +108,32 @@ static void areas_and_volumes_are_those_of_the_solids(void **state)
     scenery_free(&s);
 }
 
+/* A slab is as thick across its slope as tiles, battens and rafters are, or thatch: what it encloses is its plan by its
+ * upright thickness. */
+static void slabs_have_their_thickness(void **state)
+{
+    (void)state;
+    const double o = scenery_overhang_m, plan_m2 = (8 + 2 * o) * (12 + 2 * o);
+    for (int roof = ROOF_GABLED; roof <= ROOF_SKILLION; roof++)
+        for (int thatch = 0; thatch < 2; thatch++) {
+            Building b = with_roof(roof);
+            b.roof_fabric = thatch ? FABRIC_THATCH : FABRIC_TILE;
+            Scenery s = scenery_of(&b, rectangle, 4);
+            double  volume_m3 = 0;
+            for (int t = 0; t < s.model[0].triangle_count; t++) {
+                const Facet f = facet(&s, 0, t);
+                double      away[3];
+                if (!is_part(&f, "roof")) continue;
+                v3_sub(away, f.p[0], (const double[3]){16, 14, 105});
+                volume_m3 += v3_dot(away, f.n) / 6;
+            }
+            const double slope = roof == ROOF_SKILLION ? 3.5 / 12.4 : 3.5 / 4, m2 = covered_m2(NULL, &s, "roof", 0);
+            if (roof != ROOF_PYRAMIDAL) CHECK_NEAR(m2, plan_m2, 1e-6);
+            CHECK_NEAR(volume_m3, m2 * (thatch ? 0.35 : 0.2) * sqrt(1 + slope * slope), 1e-4);
+            scenery_free(&s);
+        }
+}
+
 /* Under a gable of a width and slope: the triangle over the walls' upright part. */
 static void gables_are_closed_by_triangles(void **state)
 {
@@ -127,6 +154,39 @@ static void gables_are_closed_by_triangles(void **state)
     CHECK_NEAR(low_m, 99.5, 1e-5); /* half a metre into the ground */
     CHECK(corner_m < 105.5 && corner_m > 105.5 - 0.3);
     CHECK_NEAR(end_m2, 8 * (corner_m - low_m) + 0.25 * 8 * 8 * 3.5 / 4, 1e-5);
+    scenery_free(&s);
+}
+
+static double highest_wall_along(const Scenery *s, int axis, double at_m)
+{
+    double high_m = -INFINITY;
+    for (int t = 0; t < s->model[0].triangle_count; t++) {
+        const Facet f = facet(s, 0, t);
+        if (!is_part(&f, "wall") || fabs(f.n[axis]) < 0.999 * v3_length(f.n) || fabs(f.p[0][axis] - at_m) > 1e-6)
+            continue;
+        for (int k = 0; k < 3; k++) high_m = fmax(high_m, f.p[k][2]);
+    }
+    return high_m;
+}
+
+/* Gables stand at the ends of wings, of short ones too, and nowhere else. */
+static void ridges_end_in_gables(void **state)
+{
+    (void)state;
+    static const double bump[8][2] = {{0, 0}, {6, 0}, {6, -2}, {10, -2}, {10, 0}, {16, 0}, {16, 9}, {0, 9}};
+    const Building      b = with_roof(ROOF_GABLED);
+    Scenery             s = scenery_of(&b, u_shape, 8);
+    CHECK(highest_wall_along(&s, 1, 0) < 105.5 && highest_wall_along(&s, 1, 15) > 108);
+    CHECK(highest_wall_along(&s, 0, 0) < 105.5 && highest_wall_along(&s, 0, 20) < 105.5);
+    scenery_free(&s);
+    s = scenery_of(&b, bump, 8);
+    CHECK(highest_wall_along(&s, 1, 0) < 105.5 && highest_wall_along(&s, 1, 9) < 105.5);
+    CHECK(highest_wall_along(&s, 0, 0) > 108 && highest_wall_along(&s, 0, 16) > 108);
+    CHECK(highest_wall_along(&s, 1, -2) > 106.5);
+    scenery_free(&s);
+    s = scenery_of(&b, ell, 6);
+    CHECK(highest_wall_along(&s, 1, 15) > 108 && highest_wall_along(&s, 0, 14) > 108);
+    CHECK(highest_wall_along(&s, 1, 0) < 105.5 && highest_wall_along(&s, 0, 0) < 105.5);
     scenery_free(&s);
 }
 
@@ -233,6 +293,13 @@ static void windows_stand_in_rows_and_doors_on_the_floor(void **state)
         }
         if (door) CHECK(fmin(f.p[0][2], fmin(f.p[1][2], f.p[2][2])) < 100.1);
         CHECK(fabs(f.n[2]) < 1e-9);
+        /* half of an upright rectangle */
+        int level = 0, plumb = 0;
+        for (int k = 0; k < 3; k++) {
+            const double *a = f.p[k], *c = f.p[(k + 1) % 3];
+            level += fabs(a[2] - c[2]) < 1e-9, plumb += hypot(a[0] - c[0], a[1] - c[1]) < 1e-9;
+        }
+        CHECK(level == 1 && plumb == 1);
         panes += pane, doors += door;
     }
     CHECK(panes >= 2 * 3 * 6 && doors == 2);
@@ -298,7 +365,7 @@ static void damage_goes_on_by_state(void **state)
 
 static double slope_of_ground(void *user, double x_m, double y_m)
 {
-    (void)y_m;
+    CHECK(x_m > 9 && x_m < 23 && y_m > 9 && y_m < 19); /* asked about the building's own ground */
     return 100 + *(const double *)user * (x_m - 10);
 }
 
@@ -318,13 +385,13 @@ static void buildings_on_a_slope_have_no_windows_in_the_ground(void **state)
         for (int t = 0; t < s.model[0].triangle_count; t++) {
             const Facet f = facet(&s, 0, t);
             for (int i = 0; i < 3; i++) {
-                const double ground_m = slope_of_ground(&slope, f.p[i][0], 0);
+                const double ground_m = slope_of_ground(&slope, f.p[i][0], 14);
                 low_m = fmin(low_m, f.p[i][2]);
                 if (is_part(&f, "window") && f.part->role == HEAT_WINDOW) CHECK(f.p[i][2] > ground_m - 0.25);
                 if (is_part(&f, "door")) CHECK(fabs(ground_m - 100) < (slope > 0.3 ? 7 : 1.3));
             }
         }
-        CHECK_NEAR(low_m, fmin(100, slope_of_ground(&slope, 22, 0)) - 0.5, 1e-5);
+        CHECK_NEAR(low_m, fmin(100, slope_of_ground(&slope, 22, 14)) - 0.5, 1e-5);
         scenery_free(&s), culture_free(&c);
     }
 }
@@ -454,7 +521,9 @@ int main(void)
         cmocka_unit_test(every_roof_closes_every_outline),
         cmocka_unit_test(eaves_and_ridge_are_exact),
         cmocka_unit_test(areas_and_volumes_are_those_of_the_solids),
+        cmocka_unit_test(slabs_have_their_thickness),
         cmocka_unit_test(gables_are_closed_by_triangles),
+        cmocka_unit_test(ridges_end_in_gables),
         cmocka_unit_test(a_hipped_roof_is_the_lowest_of_its_planes),
         cmocka_unit_test(every_slope_of_a_hipped_roof_is_as_steep),
         cmocka_unit_test(chimneys_stand_on_the_ridge),
