@@ -273,8 +273,9 @@ static void a_wood_shades_walls(void **state)
     ShadowMap        *map;
     c.heat.unix_s = paper_unix_s + 3600 * 14;
     const int slots = heat_day_sun(slot_of, d_enu, &c.heat);
-    CHECK(heat_shadow_create(&map, &(ShadowOf){&ground, 8, slots, d_enu, wood_in_the_east, NULL, NULL, NULL, NULL, NULL}, NULL) ==
-          STATUS_OK);
+    CHECK(heat_shadow_create(&map,
+                             &(ShadowOf){&ground, 8, slots, d_enu, wood_in_the_east, NULL, NULL, NULL, NULL, NULL},
+                             NULL) == STATUS_OK);
     c.shadow = map;
     build_house(&h, 0);
     SceneryObject three[3] = {h.object, h.object, h.object};
