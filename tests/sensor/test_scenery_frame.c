@@ -113,10 +113,10 @@ static void truth_names_what_hides(void **state)
     (void)state;
     const TrialFrame frame = frame_of(&stage.town, stage.two, stage.arena[0], 6),
                      bare = frame_of(&stage.bare, stage.two, stage.arena[1], 6);
-    TruthNoise       noise = {0};
-    EyeState         eye = {.host_index = -1};
-    static Target  target[64];
-    int            named = 0;
+    TruthNoise    noise = {0};
+    EyeState      eye = {.host_index = -1};
+    static Target target[64];
+    int           named = 0;
     (void)bare;
     for (int k = 0; k < frame.snapshot.count; k++) {
         const TargetPixels *t = &frame.picture.target[k], *b = &bare.picture.target[k];
