@@ -34,6 +34,54 @@ static Status quiet_open(const char *names)
     return status;
 }
 
+static Status count_part(void *user, const VectorPart *part)
+{
+    ++*(int *)user;
+    return part->shape == VECTOR_POLYGON && part->corners == 4 ? STATUS_OK : STATUS_BAD_VALUE;
+}
+
+static long status_of(pid_t process, const char *field)
+{
+    char path[64], line[256];
+    long value = -1;
+    snprintf(path, sizeof path, "/proc/%d/status", (int)process);
+    FILE *status = fopen(path, "r");
+    while (status && fgets(line, sizeof line, status))
+        if (strncmp(line, field, strlen(field)) == 0) value = strtol(line + strlen(field), NULL, 10);
+    if (status) fclose(status);
+    return value;
+}
+
+/* The process is the confined one of rasters, and leaves nothing behind: a GeoPackage is a database that others write
+ * to when they read it. */
+static void its_reader_is_confined(void **state)
+{
+    (void)state;
+    const double all[4] = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
+    char         name[128], list[2][4096] = {"", ""};
+    need_judge();
+    path_of(name, "a.gpkg");
+    for (int k = 0; k < 2; k++) {
+        char  line[160];
+        FILE *files;
+        snprintf(line, sizeof line, "cd %s && ls -l --time-style=full-iso", folder);
+        files = popen(line, "r");
+        CHECK(files && fread(list[k], 1, sizeof list[k] - 1, files) > 0 && pclose(files) == 0);
+        if (k) break;
+        Vectors   vectors;
+        VectorEnd end;
+        int       parts = 0;
+        CHECK(vectors_open(&vectors, name, "test") == STATUS_OK && vectors.files == 1 && vectors.layers == 1);
+        CHECK(vectors.box_deg[0] < vectors.box_deg[2] && vectors.box_deg[1] < vectors.box_deg[3]);
+        const pid_t reader = lab_reader();
+        CHECK(status_of(reader, "Seccomp:") == 2 && status_of(reader, "NoNewPrivs:") == 1);
+        CHECK(vectors_each(&end, &vectors, all, count_part, &parts, "test") == STATUS_OK);
+        CHECK(parts == 60 && end.features == 60 && end.outside == 0 && end.shapeless == 0);
+        vectors_close(&vectors);
+    }
+    assert_string_equal(list[0], list[1]);
+}
+
 static void names_that_are_no_files(void **state)
 {
     (void)state;
@@ -249,13 +297,10 @@ static void replies_are_checked(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_that_are_no_files),
-        cmocka_unit_test(same_for_elevation),
-        cmocka_unit_test(a_milliard_of_corners),
-        cmocka_unit_test(spoilt_files),
-        cmocka_unit_test(archives),
-        cmocka_unit_test(whatever_it_sends),
-        cmocka_unit_test(replies_are_checked),
+        cmocka_unit_test(its_reader_is_confined), cmocka_unit_test(names_that_are_no_files),
+        cmocka_unit_test(same_for_elevation),     cmocka_unit_test(a_milliard_of_corners),
+        cmocka_unit_test(spoilt_files),           cmocka_unit_test(archives),
+        cmocka_unit_test(whatever_it_sends),      cmocka_unit_test(replies_are_checked),
     };
     return cmocka_run_group_tests(tests, open_sound, close_lab);
 }
