@@ -6,10 +6,10 @@
 #include "entities/models/model.h"
 #include "entities/table/snapshot.h"
 
-    typedef enum SceneryKind {
-        SCENERY_BUILDINGS, /* a cell of ground with its buildings and works, one mesh */
-        SCENERY_CLUTTER,   /* one thing; a class of SceneryClass */
-    } SceneryKind;
+typedef enum SceneryKind {
+    SCENERY_BUILDINGS, /* a cell of ground with its buildings and works, one mesh */
+    SCENERY_CLUTTER,   /* one thing; a class of SceneryClass */
+} SceneryKind;
 
 /* Of clutter, as truth names them. */
 typedef enum SceneryClass {

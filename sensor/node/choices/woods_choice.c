@@ -128,10 +128,11 @@ static const double path_room_m = 0.25;
 static double       half_of(const Model *model) { return 0.5 * model->width_m + path_room_m; }
 
 /* From report to report on the ground. The pieces between are straight: a report in less than step_m of the last that
- * was taken is within its path. Reports that no drive joins are places; there, and at both ends, it is as long as wide. */
+ * was taken is within its path. Reports that no drive joins are places; there, and at both ends, it is as long as wide.
+ */
 static void add_track(Paths *p, const Track *track, const bool *fixed, const Model *model)
 {
-    const double half_m = half_of(model), round_m = 0.5 * hypot(model->length_m, model->width_m) + path_room_m;
+    const double        half_m = half_of(model), round_m = 0.5 * hypot(model->length_m, model->width_m) + path_room_m;
     static const double step_m = 1, jump_m = 500;
     double              last[3], here[3];
     bool                any = false;
@@ -178,8 +179,7 @@ static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalo
         const Track *track = &survey->track[t];
         const Model *model = catalog_model(catalog, catalog_find(catalog, track->type, NULL, NULL));
         const bool  *fixed = e->fixed + e->first[t];
-        if (e->stance[t] == STANCE_GROUND || e->stance[t] == STANCE_LANDED)
-            add_track(p, track, fixed, model);
+        if (e->stance[t] == STANCE_GROUND || e->stance[t] == STANCE_LANDED) add_track(p, track, fixed, model);
     }
     for (int i = 0; i < e->said.line_count && !p->no_memory; i++) add_line(p, &e->said.line[i]);
     for (int i = 0; i < survey->shot_count; i++) {
