@@ -235,7 +235,7 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
     const PixelPair pair = {a, b, xa, ya, xb, yb};
     if (!(cosine > sharp_cosine) || steps_in_depth(job, &pair, step_m, kinds ? kinds_bent : 0, kinds)) return edge;
     if (part && other) return edge;
-    return (other ? refine_ground : 0) | (job->sun[a] != job->sun[b] ? refine_sun : 0);
+    return (other ? refine_ground : 0) | ((job->sun[a] > 0) != (job->sun[b] > 0) ? refine_sun : 0);
 }
 
 /* What a pair of neighbours is, in find_pairs: it may be an edge; they are clearly alike; some plant is in it, and it
@@ -255,7 +255,7 @@ static void find_pairs(uint32_t *restrict pair, const Job *job, size_t a, size_t
         const size_t   k = a + (size_t)i, l = b + (size_t)i;
         const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]);
         const uint32_t else_other =
-            (material[k] ^ material[l]) | (plant[k] ^ plant[l]) | (uint32_t)(job->sun[k] != job->sun[l]);
+            (material[k] ^ material[l]) | (plant[k] ^ plant[l]) | (uint32_t)((job->sun[k] > 0) != (job->sun[l] > 0));
         const float    turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
         const float    near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
         const float    far_m = range_m[k] < range_m[l] ? range_m[l] : range_m[k];

@@ -133,6 +133,8 @@ void shade_samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
         visibility_shadow(dark, scene->visibility, &s->hits, scene->air->light.sun_d_enu, &shader->counters);
     if (raised) memcpy(s->hits.p_enu[2], z_m, (size_t)s->hits.count * sizeof *z_m);
     for (int i = 0; i < s->hits.count; i++) s->sun[i] = dark[i] ? 0 : 1;
+    if (leaves > 0 || light)
+        smoke_shadow(s->sun, scene->effects.volume, scene->effects.count, &s->hits, scene->air->light.sun_d_enu);
     shader->shadow_s += wall_clock_s() - t0;
 }
 

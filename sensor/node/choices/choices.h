@@ -37,7 +37,8 @@ Status choice_host(HostPlan *out, Choices *choices, const Survey *survey, const 
 /* Takes a host given by name; 0:0:0 is the observer. STATUS_BAD_VALUE and a message when the log does not contain it.
  */
 Status choice_named_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
-/* Whether choice_named_host, or choice_host where host is NULL, has what it is asked for in this survey; says nothing. */
+/* Whether choice_named_host, or choice_host where host is NULL, has what it is asked for in this survey; says nothing.
+ */
 bool choice_host_is_known(const Survey *survey, const Config *config, const DisEntityId *host);
 /* Puts the frames per second of exercise time into the plan. */
 void choice_rate(HostPlan *plan, Choices *choices, const Config *config);

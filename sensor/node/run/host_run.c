@@ -329,8 +329,8 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
     if (status == STATUS_OK) status = place_world(&frame, &square, choices, run, plan, host);
     if (status == STATUS_OK) status = choice_time(&out->unix_s, choices, &made->survey, &o->config, &frame);
     if (status == STATUS_OK)
-        status = made_world(made, choices,
-                            &(MadeOf){&o->config, &run->tables, plan, &frame, &square, out->unix_s, o->isa});
+        status =
+            made_world(made, choices, &(MadeOf){&o->config, &run->tables, plan, &frame, &square, out->unix_s, o->isa});
     if (status != STATUS_OK) return status;
     note_world(run, &frame, &square);
     report_visibility(choices, &o->config, made->world.atmosphere);

@@ -28,18 +28,18 @@ typedef enum MadeLayer {
 } MadeLayer;
 
 typedef struct MadeWorld {
-    Cache        *cache; /* of the disk; NULL: none */
-    Pool         *pool;
-    int           threads; /* of pool */
-    DisLog        log;
-    char          log_sha256[sha256_text_size];
-    uint64_t      own; /* datagrams of this node, which are not in the log */
-    Survey        survey; /* what hosts and aims are chosen by */
-    Survey        basis;  /* what the world follows from, where it is another: made_basis */
-    bool          has_basis;
-    DisDatagram  *retimed; /* the log's datagrams by the other of packet times and times by stamps; NULL: they are one */
-    Catalog      *catalog;
-    Landscape     landscape;
+    Cache       *cache; /* of the disk; NULL: none */
+    Pool        *pool;
+    int          threads; /* of pool */
+    DisLog       log;
+    char         log_sha256[sha256_text_size];
+    uint64_t     own;    /* datagrams of this node, which are not in the log */
+    Survey       survey; /* what hosts and aims are chosen by */
+    Survey       basis;  /* what the world follows from, where it is another: made_basis */
+    bool         has_basis;
+    DisDatagram *retimed; /* the log's datagrams by the other of packet times and times by stamps; NULL: they are one */
+    Catalog     *catalog;
+    Landscape    landscape;
     GroundContact contact;
     FrameScenery  scenery;
     WoodsChoice   woods;
@@ -60,24 +60,24 @@ Status made_log(MadeWorld *made, const char *path, const Config *config);
 Status made_survey(MadeWorld *made, const DisLog *heard, int exercise);
 /* What ground, plants and roads follow from: all of a recording, causal or not, or what a live node had heard when it
  * made them. heard: what the survey is of, which is taken where `from` is the same. */
-Status        made_basis(MadeWorld *made, const DisLog *from, const DisLog *heard, int exercise);
+Status made_basis(MadeWorld *made, const DisLog *from, const DisLog *heard, int exercise);
 /* The log by packet times, or by times that keep pace with its stamps, whatever a replay takes. */
 DisLog        made_log_by(const MadeWorld *made, const Config *config, bool packet_times);
 const Survey *made_basis_survey(const MadeWorld *made);
-Status made_catalog(MadeWorld *made, const Config *config, const TablesUsed *tables);
-Status made_pool(MadeWorld *made, int threads);
+Status        made_catalog(MadeWorld *made, const Config *config, const TablesUsed *tables);
+Status        made_pool(MadeWorld *made, int threads);
 /* Opens the cache of the disk, unless it is open or cache.on is off. A failure is logged, and costs time alone. */
 void made_cache(MadeWorld *made, const Config *config);
 
 /* What the world follows from, beside survey and catalog. */
 typedef struct MadeOf {
-    const Config     *config;
-    const TablesUsed *tables;
-    const HostPlan   *plan;
-    const LocalFrame *frame;
+    const Config      *config;
+    const TablesUsed  *tables;
+    const HostPlan    *plan;
+    const LocalFrame  *frame;
     const WoodsSquare *square;
-    double            unix_s; /* of exercise time 0 */
-    const char       *isa;
+    double             unix_s; /* of exercise time 0 */
+    const char        *isa;
 } MadeOf;
 /* Makes or takes over ground, woods, models, air and warmth; adds the lines of their choices. */
 Status made_world(MadeWorld *made, Choices *choices, const MadeOf *of);
