@@ -99,8 +99,8 @@ Status scenery_add_clutter(Scenery *scenery, const ClutterConfig *config)
     }
     if (status == STATUS_OK) status = clutter_into_scenery(scenery, work);
     if (status == STATUS_OK)
-        log_info("clutter: placed: objects=%d models=%d states=%d driving=%d", scenery->objects, scenery->models,
-                 scenery->states, scenery->movers);
+        log_detail("clutter: placed: objects=%d models=%d states=%d driving=%d", scenery->objects, scenery->models,
+                   scenery->states, scenery->movers);
     else if (status == STATUS_NO_MEMORY) log_error("clutter: no memory; next: a smaller terrain.clutter");
     clutter_spots_destroy(work->spots);
     free(work->variant), free(work->thing), free(work->path), free(work);

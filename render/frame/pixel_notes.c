@@ -120,6 +120,8 @@ static void add_sample(const Worker *w, const Job *job, int i, int group, double
         for (int b = 0; b < radar_bounces && s->radar; b++) out->radar[b] = s->returns.power[b][i];
         if (s->radar) out->radar_power = s->radar_power[i];
         if (hits->kind[i] == hit_part && hits->entity[i]) set_patches(out, job, hits, i);
+        if (hits->kind[i] == hit_scenery)
+            thermal_scenery_of(&out->scenery, job->scene.air, job->scene.visibility, hits, i);
     }
     pthread_mutex_unlock(&r->lock);
 }

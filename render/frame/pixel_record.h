@@ -9,6 +9,7 @@
 #define RENDER_FRAME_PIXEL_RECORD_H
 
 #include "render/frame/picture.h"
+#include "render/heat/scenery_heat.h"
 
 #include <pthread.h>
 
@@ -41,7 +42,7 @@ typedef struct PixelSample {
     HitKind  kind;
     double   range_m, p_enu[3];
     float    n_enu[3];
-    uint32_t entity, part, plant; /* as in Picture: from 1 */
+    uint32_t entity, part, plant; /* as in Picture: from 1; plant: of scenery its object */
     uint16_t model, material;     /* material: as the light has it, of far woods their canopy's */
     uint8_t  surface;
     float    radius_m, open_up; /* of plants */
@@ -52,10 +53,11 @@ typedef struct PixelSample {
         int   index;
         float share, temp_k;
     } patch[pixel_patches];
-    unsigned   channels; /* 1 << AirBand: those of `light` */
-    PixelLight light[AIR_BAND_COUNT];
-    bool       has_radar;
-    float      radar[radar_bounces], radar_power; /* relative; the sum of the three */
+    SceneryHeatOf scenery;  /* of scenery; zeroes: as warm as the air */
+    unsigned      channels; /* 1 << AirBand: those of `light` */
+    PixelLight    light[AIR_BAND_COUNT];
+    bool          has_radar;
+    float         radar[radar_bounces], radar_power; /* relative; the sum of the three */
 } PixelSample;
 
 typedef enum PixelStepKind {

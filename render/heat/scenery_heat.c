@@ -316,22 +316,74 @@ static double wall_k(const SceneryTemps *t, int wall, const SceneryObject *o, co
     return lit_k + taken * (shade_k - lit_k);
 }
 
-double scenery_temp_k(const SceneryTemps *t, int object, int part, const double p_body[3], const double n_enu[3])
+/* A place of clutter in the axes of its part's node, and the patches there; NULL: none are known. */
+static const Patches *patches_at(double p_node[3], double n_node[3], const SceneryTemps *t, int object, int part,
+                                 const double p_body[3], const double n_enu[3])
 {
     const SceneryHeat   *h = t->heat;
     const SceneryObject *o = &h->scenery->object[object];
-    const Model         *model = &h->scenery->model[o->model];
-    if (part < 0 || part >= model->part_count) return t->air_k;
-    if (o->state < 0) return wall_k(t, h->part_wall[h->part_first[o->model] + part], o, p_body, n_enu);
-    if (!t->first || t->first[o->state] < 0) return t->air_k;
-    const int       mover = h->mover_of[object];
+    if (!t->first || t->first[o->state] < 0) return NULL;
+    const int       mover = h->mover_of[object], first = h->states.entity[o->state].first_node;
     const double   *r = mover >= 0 ? t->r_enu_from_body[mover] : o->r_enu_from_body;
-    const Patches  *patches = &h->states.patches.of[h->scenery->state[o->state].model];
-    const NodePose *node = &h->states.node[h->states.entity[o->state].first_node + model->part[part].node];
-    double          n_body[3], from[3], p_node[3], n_node[3];
+    const NodePose *node = &h->states.node[first + h->scenery->model[o->model].part[part].node];
+    double          n_body[3], from[3];
     m3_tmul_v3(n_body, r, n_enu);
     v3_sub(from, p_body, node->p_body);
     m3_tmul_v3(p_node, node->r_body_from_node, from);
     m3_tmul_v3(n_node, node->r_body_from_node, n_body);
-    return patches_value(patches, t->patch_k + t->first[o->state], part, p_node, n_node);
+    return &h->states.patches.of[h->scenery->state[o->state].model];
+}
+
+double scenery_temp_k(const SceneryTemps *t, int object, int part, const double p_body[3], const double n_enu[3])
+{
+    const SceneryHeat   *h = t->heat;
+    const SceneryObject *o = &h->scenery->object[object];
+    double               p_node[3], n_node[3];
+    if (part < 0 || part >= h->scenery->model[o->model].part_count) return t->air_k;
+    if (o->state < 0) return wall_k(t, h->part_wall[h->part_first[o->model] + part], o, p_body, n_enu);
+    const Patches *patches = patches_at(p_node, n_node, t, object, part, p_body, n_enu);
+    return patches ? patches_value(patches, t->patch_k + t->first[o->state], part, p_node, n_node) : t->air_k;
+}
+
+/* ---- where it comes from ----------------------------------------------------------------------- */
+
+/* Keeps the largest shares; the temperature is linear in those of the patches. */
+static void find_sources(SceneryHeatOf *out, const Patches *patches, const float *patch_k, int part,
+                         const double p_node[3], const double n_node[3])
+{
+    float one[patches_most] = {0};
+    for (int k = 0; k < patches->count && k < patches_most; k++) {
+        one[k] = 1;
+        const double share = patches_value(patches, one, part, p_node, n_node);
+        one[k] = 0;
+        if (!(share > 0)) continue;
+        int at = out->patches < scenery_most_sources ? out->patches++ : scenery_most_sources - 1;
+        if (at == scenery_most_sources - 1 && out->patch[at].share >= share) continue;
+        for (; at > 0 && out->patch[at - 1].share < share; at--) out->patch[at] = out->patch[at - 1];
+        out->patch[at].index = k, out->patch[at].share = share;
+        out->patch[at].role = patches->patch[k].role, out->patch[at].temp_k = (double)patch_k[k];
+    }
+}
+
+void scenery_heat_of(SceneryHeatOf *out, const SceneryTemps *t, int object, int part, const double p_body[3],
+                     const double n_enu[3])
+{
+    const SceneryHeat   *h = t->heat;
+    const SceneryObject *o = &h->scenery->object[object];
+    double               p_node[3], n_node[3];
+    *out = (SceneryHeatOf){.sun_k = NAN, .shade_k = NAN, .behind_k = NAN};
+    if (part < 0 || part >= h->scenery->model[o->model].part_count) return;
+    if (o->state < 0) {
+        const int           wall = h->part_wall[h->part_first[o->model] + part];
+        const SceneryWalls *w = &h->walls;
+        const double        a_k = w->table[0].behind_k[wall], b_k = w->table[1].behind_k[wall];
+        out->of = &w->wall[wall].kind.of;
+        out->sun_k = facets_k(&out->shade_k, t, wall, n_enu);
+        out->taken = t->sun_k ? taken_at(t, wall, o, p_body, n_enu) : 0;
+        out->behind_k = a_k + t->share * (b_k - a_k);
+        return;
+    }
+    out->state = &h->scenery->state[o->state];
+    const Patches *patches = patches_at(p_node, n_node, t, object, part, p_body, n_enu);
+    if (patches) find_sources(out, patches, t->patch_k + t->first[o->state], part, p_node, n_node);
 }

@@ -74,4 +74,22 @@ void scenery_wall_seen(WallSeen *out, const SceneryTemps *temps, const double n_
  * outward. Any number of threads. */
 double scenery_temp_k(const SceneryTemps *temps, int object, int part, const double p_body[3], const double n_enu[3]);
 
+/* Where that comes from. Of buildings: temp_k = sun_k + taken (shade_k - sun_k). */
+enum { scenery_most_sources = 4 };
+typedef struct SceneryHeatOf {
+    const Construction *of;                       /* its construction; NULL: clutter, or not known */
+    double              sun_k, shade_k, behind_k; /* with all of the past sun, without; of what is behind it */
+    double              taken;                    /* share of the past sun that relief and plants took */
+    const SceneryState *state;                    /* of clutter: what it does; NULL: a building */
+    int                 patches;                  /* those that it comes from, the most important first */
+    struct {
+        int      index;
+        HeatRole role;
+        double   share, temp_k;
+    } patch[scenery_most_sources];
+} SceneryHeatOf;
+/* For records of single rays: slow. One thread at a time. */
+void scenery_heat_of(SceneryHeatOf *out, const SceneryTemps *temps, int object, int part, const double p_body[3],
+                     const double n_enu[3]);
+
 #endif

@@ -8,7 +8,6 @@
 
 #include "render/light/thermal.h"
 #include "render/heat/heat.h"
-#include "render/heat/scenery_heat.h"
 #include "render/trace/scenery/scenery_tracer.h"
 #include "pitviper_simd.h"
 #include "pitviper.h"
@@ -118,14 +117,29 @@ static double part_k(const PartTemps *parts, double air_k, const Hits *hits, int
     return isfinite(temp_k) ? temp_k : air_k;
 }
 
+static void outward_normal(double n_enu[3], const Hits *hits, int i)
+{
+    const double side = hits->inside[i] ? -1 : 1;
+    for (int k = 0; k < 3; k++) n_enu[k] = side * (double)hits->n_geo[k][i];
+}
+
+bool thermal_scenery_of(SceneryHeatOf *out, const Air *air, const Visibility *visibility, const Hits *hits, int i)
+{
+    const SceneryFrame *scenery = scenery_frame_in(visibility);
+    double              n_enu[3], p_body[3], n_body[3];
+    if (!air->heat || !air->heat->scenery || !scenery) return false;
+    outward_normal(n_enu, hits, i);
+    scenery_frame_on_body(p_body, n_body, scenery, hits, i, n_enu);
+    scenery_heat_of(out, air->heat->scenery, (int)hits->instance[i] - 1, hits->part[i] - 1, p_body, n_enu);
+    return true;
+}
+
 /* Temperature of scenery at a hit, over the air of its height; that of the air where none is known. */
 static double scenery_k(const Air *air, const SceneryFrame *scenery, double air_k, const Hits *hits, int i)
 {
-    const double side = hits->inside[i] ? -1 : 1; /* outward */
-    const double n_enu[3] = {side * (double)hits->n_geo[0][i], side * (double)hits->n_geo[1][i],
-                             side * (double)hits->n_geo[2][i]};
-    double       p_body[3], n_body[3];
+    double n_enu[3], p_body[3], n_body[3];
     if (!air->heat || !air->heat->scenery || !scenery) return air_k;
+    outward_normal(n_enu, hits, i);
     scenery_frame_on_body(p_body, n_body, scenery, hits, i, n_enu);
     const double temp_k =
         scenery_temp_k(air->heat->scenery, (int)hits->instance[i] - 1, hits->part[i] - 1, p_body, n_enu);

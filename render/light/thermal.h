@@ -2,6 +2,7 @@
 #ifndef RENDER_LIGHT_THERMAL_H
 #define RENDER_LIGHT_THERMAL_H
 
+#include "render/heat/scenery_heat.h"
 #include "render/heat/vehicle_heat.h"
 #include "render/trace/visibility/visibility.h"
 #include "entities/table/snapshot.h"
@@ -25,6 +26,9 @@ typedef struct PartTemps {
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const PartTemps *parts,
                          const Hits *hits, const uint16_t *material, const float *sun, const float *photo,
                          const float *warmth_k);
+
+/* Where that of a hit of scenery comes from (hits of kind hit_scenery); false: it is as warm as the air. */
+bool thermal_scenery_of(SceneryHeatOf *out, const Air *air, const Visibility *visibility, const Hits *hits, int i);
 
 /* band: BAND_MWIR or BAND_LWIR. sun: share of the direct sun that arrives, 0 .. 1, in MWIR; NULL: all. around_w_m2:
  * irradiance of each hit from sky and surroundings (render/light/hemisphere.h); NULL: sky and ground by the tilt

@@ -244,7 +244,8 @@ const char *culture_fault(const Culture *c)
         const Building *b = &c->building[n];
         const double(*p)[2] = corners_of(c, b->first_corner, b->corners, 3);
         if (!p || !is_building(b)) return "a building";
-        if (!(culture_area_m2(p, b->corners) >= least_m2) || crosses_itself(p, b->corners)) return "outline of a building";
+        if (!(culture_area_m2(p, b->corners) >= least_m2) || crosses_itself(p, b->corners))
+            return "outline of a building";
     }
     for (int n = 0; n < c->lines; n++)
         if (!corners_of(c, c->line[n].first_corner, c->line[n].corners, 2) || !is_line(&c->line[n])) return "a line";

@@ -95,7 +95,7 @@ static inline Status stood_woods(WoodsChoice *out, Choices *choices, const Exerc
     static const Culture nothing;
     GroundEvidence      *evidence = NULL;
     WoodsSquare          square;
-    Status          status = choice_evidence(&evidence, &e->survey, catalog, &land->frame);
+    Status               status = choice_evidence(&evidence, &e->survey, catalog, &land->frame);
     if (status == STATUS_OK) status = choice_square(&square, &e->survey, config, &land->frame, plan);
     if (status == STATUS_OK)
         status = choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, evidence, NULL, NULL}, &square,

@@ -14,8 +14,8 @@ static Status read_files(Culture *out, const Config *config, const WoodsSquare *
                                .frame = &landscape->frame,
                                .ground = frame_scenery_ground,
                                .user = (void *)landscape,
-                               .half_m = square->half_width_m +
-                                         fmax(fabs(square->centre_m[0]), fabs(square->centre_m[1]))};
+                               .half_m =
+                                   square->half_width_m + fmax(fabs(square->centre_m[0]), fabs(square->centre_m[1]))};
     CultureReport      report;
     return culture_open(out, &report, &from);
 }
@@ -25,8 +25,8 @@ static SceneryPlan plan_of(const Config *config, const WoodsSquare *square)
     const double half_m = fmin(square->half_width_m, clutter_half_m);
     const bool   off = strcmp(config->terrain.buildings, "off") == 0 && !*config->terrain.trees;
     SceneryPlan  plan = {.from = strcmp(config->terrain.buildings, "invented") == 0 ? CULTURE_FROM_SEED
-                                 : off                                             ? CULTURE_FROM_NOTHING
-                                                                                   : CULTURE_FROM_RECORDS,
+                                 : off                                              ? CULTURE_FROM_NOTHING
+                                                                                    : CULTURE_FROM_RECORDS,
                          .invented = {.seed = (uint64_t)config->seed,
                                       .centre_m = {square->centre_m[0], square->centre_m[1]},
                                       .half_width_m = square->half_width_m},

@@ -294,8 +294,8 @@ static Status place_world(LocalFrame *frame, WoodsSquare *square, Choices *choic
     HostPlan           of;
     Status             status = plan_of_world(&of, run, plan, host);
     if (status == STATUS_OK)
-        status = run->noted ? local_frame_at(frame, &run->world_note.origin)
-                            : choice_world_frame(frame, basis, config, &of);
+        status =
+            run->noted ? local_frame_at(frame, &run->world_note.origin) : choice_world_frame(frame, basis, config, &of);
     if (status == STATUS_OK && *config->terrain.store) {
         double p_ecef[3];
         if (!choice_aim_place(p_ecef, basis, &of)) memcpy(p_ecef, frame->origin_ecef, sizeof p_ecef);

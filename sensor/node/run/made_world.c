@@ -20,8 +20,9 @@ static const char *const layer_keys[MADE_LAYERS] = {
     [MADE_CATALOG] = "models.",
     [MADE_GROUND] = "seed terrain. -terrain.woods -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter",
     [MADE_CULTURE] = "seed terrain.buildings terrain.trees terrain.clutter models.sag_m",
-    [MADE_WOODS] = "seed terrain. -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
-                   "-terrain.woods_low_m -terrain.woods_far_m -terrain.woods_far_mb",
+    [MADE_WOODS] =
+        "seed terrain. -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
+        "-terrain.woods_low_m -terrain.woods_far_m -terrain.woods_far_mb",
     [MADE_MODELS] = "models. terrain.detail terrain.woods_leaves terrain.woods_level1_px terrain.woods_tables "
                     "terrain.woods_sway terrain.woods_far_m terrain.woods_far_mb",
     [MADE_AIR] = "weather.atmosphere weather.visibility_m weather.fog",
@@ -369,8 +370,9 @@ static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *e
              m->scenery.culture.index ? m->key[MADE_CULTURE] : "", key_text);
     const bool        known = *m->key[MADE_CATALOG] && *m->key[MADE_CULTURE] && *key_text;
     const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, evidence, m->cache, known ? follows : NULL};
-    return done(m, MADE_WOODS, key_text,
-                choice_woods(&m->woods, &m->said[MADE_WOODS], &basis, of->square, &m->landscape, &m->scenery.culture, m->pool));
+    return done(
+        m, MADE_WOODS, key_text,
+        choice_woods(&m->woods, &m->said[MADE_WOODS], &basis, of->square, &m->landscape, &m->scenery.culture, m->pool));
 }
 
 static Status need_models(MadeWorld *m, const MadeOf *of)

@@ -21,7 +21,7 @@ typedef struct RunRecord {
 } RunRecord;
 
 extern const FieldTable run_counter_fields;
-extern const FieldTable run_scenery_fields;            /* run_scenery.c */
+extern const FieldTable run_scenery_fields;             /* run_scenery.c */
 const void             *run_scenery_of(const void *of); /* of a RunRecord; NULL: there is none */
 void                    run_count_scenery(RunRecord *record);
 

@@ -34,11 +34,11 @@ typedef struct SessionShared {
     const DisOf      *dis;                      /* Data PDUs of each frame, its clock being the player; NULL: none */
     const FrameClock *clock;                    /* one on the wall: a latency ledger is kept, and streams are left out
                                                  * when late; NULL: none */
-    int                save_count;              /* frames that are also written as frame files, ascending */
-    const int         *save;                    /* [save_count] */
-    const WoodsConfig *woods;                   /* of the world's plants; NULL: none */
+    int                 save_count;             /* frames that are also written as frame files, ascending */
+    const int          *save;                   /* [save_count] */
+    const WoodsConfig  *woods;                  /* of the world's plants; NULL: none */
     const FrameScenery *scenery;                /* what stands there; may be empty */
-    const char        *isa;                     /* as tracer_create */
+    const char         *isa;                    /* as tracer_create */
     void (*note)(void *user, const char *text); /* into the live recording; NULL: there is none; user: as above */
     const char *notes;                          /* of the recording that is played, DisLog.notes; NULL: none */
     /* What a frame of a live node gives up (frame_verdict.h), chosen before it is rendered, and noted. NULL: nothing;

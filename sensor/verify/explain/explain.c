@@ -1,5 +1,5 @@
 /* sensor/verify/explain/explain.c: renders a saved frame with a record of one pixel, and adds that up. */
-#include "sensor/verify/explain/explain.h"
+#include "sensor/verify/explain/explain_private.h"
 
 #include "render/trace/plants/forest.h"
 
@@ -35,6 +35,8 @@ void explain_surface(char *out, size_t size, const Explained *e, const PixelSamp
         const char           *part = (int)s->part <= model->part_count && s->part ? model->part[s->part - 1].name : "";
         dis_entity_id_text(id, entity->id);
         snprintf(out, size, "%s %s, %s", id, model->name, part);
+    } else if (s->kind == hit_scenery) {
+        explain_scenery_name(out, size, e, s);
     } else if (s->kind == hit_plant) {
         snprintf(out, size, "%s, %s", name_of_plant(e->scene, s->plant - 1), s->radius_m > 0 ? "wood" : "leaf");
     } else {

@@ -1,5 +1,5 @@
 /* sensor/verify/explain/explain_json.c: a pixel explained as JSON: every sample, with all figures as they are. */
-#include "sensor/verify/explain/explain.h"
+#include "sensor/verify/explain/explain_private.h"
 
 #include "sensor/frame/json_object.h"
 
@@ -50,6 +50,7 @@ static json_t *heat_json(const Explained *e, const PixelSample *s)
     set(heat, "sun_or_photograph_k", (double)s->sunlit_k - (double)s->still_k);
     set(heat, "detail_k", (double)s->detailed_k - (double)s->sunlit_k);
     set(heat, "far_woods_k", (double)s->temp_k - (double)s->detailed_k);
+    if (s->kind == hit_scenery) explain_scenery_json(heat, &s->scenery);
     if (s->patches == 0) return heat;
     json_t *patches = json_array();
     for (int k = 0; k < s->patches; k++) {

@@ -1,5 +1,5 @@
 /* sensor/verify/explain/explain_text.c: a pixel explained in words, some 40 lines. */
-#include "sensor/verify/explain/explain.h"
+#include "sensor/verify/explain/explain_private.h"
 
 #include "sensor/detector/array_noise.h"
 
@@ -17,7 +17,8 @@ typedef struct Surface {
 static bool same_surface(const PixelSample *a, const PixelSample *b)
 {
     return a->kind == b->kind && a->entity == b->entity && a->part == b->part && a->material == b->material &&
-           a->surface == b->surface && (a->radius_m > 0) == (b->radius_m > 0);
+           a->surface == b->surface && (a->kind != hit_scenery || a->plant == b->plant) &&
+           (a->radius_m > 0) == (b->radius_m > 0);
 }
 
 static void add_to(Surface *s, const PixelSample *of, double weight)
@@ -90,19 +91,23 @@ static void print_heat(FILE *to, const Explained *e, const Surface *s)
     const double       w = s->weight;
     char               name[3 * model_name_size];
     const bool         plant = of->kind == hit_plant, leaf = plant && !(of->radius_m > 0);
+    const bool         scenery = of->kind == hit_scenery;
     explain_surface(name, sizeof name, e, of);
     fprintf(to, "  %.2f K  %s = air there %.2f %+.2f %s", s->temp_k / w, name, s->air_k / w, s->stored_k / w,
-            of->entity ? "of its heat (engine, motion, sun of the hours before)"
-            : leaf     ? "in the shade"
-            : plant    ? "of the sun of the day"
-                       : "of the ground's heat");
+            of->entity                     ? "of its heat (engine, motion, sun of the hours before)"
+            : scenery && of->scenery.state ? "of its heat (engine, fire, life, sun of the hours before)"
+            : scenery                      ? "of its construction (what is behind it, sun of the hours before)"
+            : leaf                         ? "in the shade"
+            : plant                        ? "of the sun of the day"
+                                           : "of the ground's heat");
     if (leaf) fprintf(to, " %+.2f in this sun", s->sun_k / w);
-    if (!plant && !of->entity) {
+    if (!plant && !scenery && !of->entity) {
         if (s->sun_k != 0) fprintf(to, " %+.2f by the photograph", s->sun_k / w);
         fprintf(to, " %+.2f of its detail", s->detail_k / w);
         if (s->canopy_k != 0) fprintf(to, " %+.2f of far woods", s->canopy_k / w);
     }
     fprintf(to, "\n");
+    if (scenery) explain_scenery_heat(to, &of->scenery);
     for (int k = 0; k < of->patches && k < 2 && (k == 0 || of->patch[k].share >= 0.005F); k++) {
         const Patch *patch = &e->scene->world.patches->of[of->model].patch[of->patch[k].index];
         fprintf(to, "%s%.0f %% patch %d (%s) %.2f K",

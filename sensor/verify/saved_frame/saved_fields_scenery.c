@@ -13,7 +13,10 @@ static void byte_field(Fields *f, const char *name, uint8_t *value, int high)
     *value = (uint8_t)number;
 }
 
-static void corner_fields(Fields *f, void *record) { field_reals(f, "corner of culture", record, 2, culture_farthest_m); }
+static void corner_fields(Fields *f, void *record)
+{
+    field_reals(f, "corner of culture", record, 2, culture_farthest_m);
+}
 
 static void building_fields(Fields *f, void *record)
 {

@@ -24,13 +24,19 @@ static const struct Chunk {
     ChunkFields *fields;                      /* NULL: the ground, which may be a cut-out */
     bool (*is_there)(const SavedFrame *file); /* NULL: in every file */
 } chunks[] = {
-    {"about", saved_fields_about, NULL},       {"settings", saved_fields_settings, NULL},
-    {"tables", saved_fields_tables, NULL},     {"models", saved_fields_models, NULL},
-    {"snapshot", saved_fields_snapshot, NULL}, {"request", saved_fields_request, NULL},
-    {"planes", saved_fields_planes, NULL},     {"ground", NULL, NULL},
-    {"woods", saved_fields_woods, has_woods},  {"marks", saved_fields_marks, has_marks},
+    {"about", saved_fields_about, NULL},
+    {"settings", saved_fields_settings, NULL},
+    {"tables", saved_fields_tables, NULL},
+    {"models", saved_fields_models, NULL},
+    {"snapshot", saved_fields_snapshot, NULL},
+    {"request", saved_fields_request, NULL},
+    {"planes", saved_fields_planes, NULL},
+    {"ground", NULL, NULL},
+    {"woods", saved_fields_woods, has_woods},
+    {"marks", saved_fields_marks, has_marks},
     {"scenery", saved_fields_scenery, has_scenery},
-    {"radar", saved_fields_radar, has_radar},  {"coarse", saved_fields_coarse, has_coarse},
+    {"radar", saved_fields_radar, has_radar},
+    {"coarse", saved_fields_coarse, has_coarse},
 };
 enum { chunk_kinds = sizeof chunks / sizeof *chunks };
 

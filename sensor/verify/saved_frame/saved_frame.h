@@ -76,7 +76,7 @@ typedef struct SavedFrame {
     WoodsConfig    woods;                           /* its store is the ground's */
     bool           built;                           /* the world has scenery, made again from: */
     SavedScenery   scenery;
-    bool           measured;                        /* a radar did: */
+    bool           measured; /* a radar did: */
     SavedRadar     radar;
     char           frame_sha256[sha256_text_size];
     int            plane_count;

@@ -9,17 +9,17 @@
 #include "sensor/settings/tables_used.h"
 
 typedef struct SavedScene {
-    Config      config;
-    Cache      *cache; /* of the disk; NULL: none */
-    Sensors     sensors;
-    Catalog    *catalog;
-    Landscape   landscape;
+    Config       config;
+    Cache       *cache; /* of the disk; NULL: none */
+    Sensors      sensors;
+    Catalog     *catalog;
+    Landscape    landscape;
     FrameScenery scenery;
-    Woods       woods; /* of the world's plants, if any */
-    World       world;
-    EffectTable effects;
-    Snapshot    snapshot; /* the file's, with the models of this catalog */
-    int         tables_differ;
+    Woods        woods; /* of the world's plants, if any */
+    World        world;
+    EffectTable  effects;
+    Snapshot     snapshot; /* the file's, with the models of this catalog */
+    int          tables_differ;
 } SavedScene;
 
 /* Tables and models that differ from those of the frame are logged by name: STATUS_BAD_VALUE unless forced.

@@ -20,8 +20,8 @@ static void object_bytes(ByteSink *s, const SceneryObject *o)
 static void state_bytes(ByteSink *s, const SceneryState *of)
 {
     const EntityDrives *d = &of->drives;
-    const float         number[9] = {d->engine,  d->speed_mps, d->flying, d->alive,        d->burning,
-                                     d->motor,   d->flare,     of->heading_rad, of->stood_s};
+    const float         number[9] = {d->engine, d->speed_mps, d->flying,       d->alive,   d->burning,
+                                     d->motor,  d->flare,     of->heading_rad, of->stood_s};
     const double        real[3] = {d->since_s, d->fired_kg[0], d->fired_kg[1]};
     sink_bytes(s, &(int32_t){of->model}, sizeof(int32_t));
     sink_bytes(s, number, sizeof number);
