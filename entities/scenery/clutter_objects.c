@@ -9,9 +9,10 @@ static EntityDrives drives_of(int mode)
 {
     /* cruising takes a civil vehicle a sixth of its full power; of that the gas of its engine is to be as warm, between
      * idling (0.6) and full power; estimate */
-    static const double cruises = 0.75;
+    static const double cruises = 0.75, works = 0.9; /* works: a machine at most of its power */
     EntityDrives        drives = {0};
     if (mode == clutter_mode_idles) drives.engine = (float)drives_idle;
+    else if (mode == clutter_mode_works) drives.engine = (float)works;
     else if (mode == clutter_mode_lives) drives.alive = 1;
     else if (mode == clutter_mode_burns) drives.burning = 1;
     else if (mode >= clutter_mode_stopped) drives.engine = (float)cruises;

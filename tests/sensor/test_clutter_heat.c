@@ -53,7 +53,7 @@ static int teardown(void **state)
     return 0;
 }
 
-enum { idles, drives, lives, burns, cold, stopped_3_min, stopped_1_h, stopped_1_day };
+enum { idles, works, drives, lives, burns, cold, stopped_3_min, stopped_1_h, stopped_1_day };
 
 typedef struct Want {
     const char *shape, *part;
@@ -68,9 +68,9 @@ static const Want want[] = {
     {"car", "exhaust", idles, 80, 350,
      "pipes and silencers behind the catalyst: 370 .. 620 K (Heywood, table 12: by load)"},
     {"car", "exhaust", drives, 80, 350, "the same"},
-    {"generator", "exhaust", idles, 80, 350, "the same of a diesel's stack"},
-    {"tractor", "bonnet", idles, 3, 80, "as the car's, closer to the engine"},
-    {"tractor", "exhaust", idles, 80, 350, "a stack without a shield"},
+    {"generator", "exhaust", works, 80, 350, "the same of a diesel's stack"},
+    {"tractor", "bonnet", works, 3, 80, "as the car's, closer to the engine"},
+    {"tractor", "exhaust", works, 80, 350, "a stack without a shield"},
     {"cow", "body", lives, 2, 40, "dark coats in the sun: up to 40 K above the air at low wind (Stewart 1953)"},
     {"cow", "udder", lives, 8, 20,
      "udders and muzzles: 303 .. 309 K in barns of 293 K: 10 .. 16 K above the air (thermographs)"},
@@ -89,7 +89,7 @@ static SceneryState state_of(int model, int does)
 {
     static const float stood_s[] = {[stopped_3_min] = 180, [stopped_1_h] = 3600, [stopped_1_day] = 86400};
     SceneryState       s = {.model = model};
-    s.drives.engine = does == idles ? 0.6f : does == drives || does >= stopped_3_min ? 0.75f : 0;
+    s.drives.engine = does == idles ? 0.6f : does == works ? 0.9f : does == drives || does >= stopped_3_min ? 0.75f : 0;
     s.drives.speed_mps = does == drives ? 15 : 0;
     s.drives.alive = does == lives, s.drives.burning = does == burns;
     s.stood_s = does >= stopped_3_min ? stood_s[does] : 0;
