@@ -92,12 +92,13 @@ static void print_heat(FILE *to, const Explained *e, const Surface *s)
     const bool         plant = of->kind == hit_plant, leaf = plant && !(of->radius_m > 0);
     explain_surface(name, sizeof name, e, of);
     fprintf(to, "  %.2f K  %s = air there %.2f %+.2f %s", s->temp_k / w, name, s->air_k / w, s->stored_k / w,
-            of->entity ? "of its heat (engine, motion, sun of the hours before)"
-            : leaf     ? "in the shade"
-            : plant    ? "of the sun of the day"
-                       : "of the ground's heat");
+            of->entity                ? "of its heat (engine, motion, sun of the hours before)"
+            : leaf                    ? "in the shade"
+            : plant                   ? "of the sun of the day"
+            : of->kind == hit_scenery ? "of what it is built of, and of the hours before"
+                                      : "of the ground's heat");
     if (leaf) fprintf(to, " %+.2f in this sun", s->sun_k / w);
-    if (!plant && !of->entity) {
+    if (of->kind == hit_ground) {
         if (s->sun_k != 0) fprintf(to, " %+.2f by the photograph", s->sun_k / w);
         fprintf(to, " %+.2f of its detail", s->detail_k / w);
         if (s->canopy_k != 0) fprintf(to, " %+.2f of far woods", s->canopy_k / w);
