@@ -42,11 +42,7 @@ typedef struct PixelSample {
     HitKind  kind;
     double   range_m, p_enu[3];
     float    n_enu[3];
-<<<<<<< HEAD
     uint32_t entity, part, plant; /* as in Picture: from 1; plant: of scenery its object */
-=======
-    uint32_t entity, part, plant; /* as in Picture: from 1; plant: of scenery its object, Picture.instance */
->>>>>>> trace
     uint16_t model, material;     /* material: as the light has it, of far woods their canopy's */
     uint8_t  surface;
     float    radius_m, open_up; /* of plants */

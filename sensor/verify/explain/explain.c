@@ -36,15 +36,7 @@ void explain_surface(char *out, size_t size, const Explained *e, const PixelSamp
         dis_entity_id_text(id, entity->id);
         snprintf(out, size, "%s %s, %s", id, model->name, part);
     } else if (s->kind == hit_scenery) {
-<<<<<<< HEAD
         explain_scenery_name(out, size, e, s);
-=======
-        const Scenery       *scenery = scenery_tracer_of(e->scene->world.scenery);
-        const SceneryObject *object = &scenery->object[s->plant - 1];
-        const Model         *model = &scenery->model[object->model];
-        snprintf(out, size, "%s, %s", object->kind == SCENERY_CLUTTER ? scenery_class_name(object->class) : "building",
-                 model->part[s->part - 1].name);
->>>>>>> trace
     } else if (s->kind == hit_plant) {
         snprintf(out, size, "%s, %s", name_of_plant(e->scene, s->plant - 1), s->radius_m > 0 ? "wood" : "leaf");
     } else {

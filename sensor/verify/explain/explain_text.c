@@ -94,7 +94,6 @@ static void print_heat(FILE *to, const Explained *e, const Surface *s)
     const bool         scenery = of->kind == hit_scenery;
     explain_surface(name, sizeof name, e, of);
     fprintf(to, "  %.2f K  %s = air there %.2f %+.2f %s", s->temp_k / w, name, s->air_k / w, s->stored_k / w,
-<<<<<<< HEAD
             of->entity                     ? "of its heat (engine, motion, sun of the hours before)"
             : scenery && of->scenery.state ? "of its heat (engine, fire, life, sun of the hours before)"
             : scenery                      ? "of its construction (what is behind it, sun of the hours before)"
@@ -103,15 +102,6 @@ static void print_heat(FILE *to, const Explained *e, const Surface *s)
                                            : "of the ground's heat");
     if (leaf) fprintf(to, " %+.2f in this sun", s->sun_k / w);
     if (!plant && !scenery && !of->entity) {
-=======
-            of->entity                ? "of its heat (engine, motion, sun of the hours before)"
-            : leaf                    ? "in the shade"
-            : plant                   ? "of the sun of the day"
-            : of->kind == hit_scenery ? "of what it is built of, and of the hours before"
-                                      : "of the ground's heat");
-    if (leaf) fprintf(to, " %+.2f in this sun", s->sun_k / w);
-    if (of->kind == hit_ground) {
->>>>>>> trace
         if (s->sun_k != 0) fprintf(to, " %+.2f by the photograph", s->sun_k / w);
         fprintf(to, " %+.2f of its detail", s->detail_k / w);
         if (s->canopy_k != 0) fprintf(to, " %+.2f of far woods", s->canopy_k / w);
