@@ -248,7 +248,7 @@ static double sun_of_day(double *taken, const SceneryTemps *t, int wall, const d
         const double k = scenery_walls_cosine(w, wall, s, n_enu) * (double)t->sun_k[wall][s];
         all += k, lost += shadow ? k * shadow[s] : 0;
     }
-    *taken = all > 1e-3 ? fmin(lost / (255 * all), 1) : 0;
+    *taken = all > 1e-3 ? clamp(lost / (255 * all), 0, 1) : 0;
     return all;
 }
 
