@@ -17,8 +17,8 @@ typedef enum SettingType {
     /* char[], the names of files. In a file of settings they are relative to that file's folder, on a command line to
      * the current one: after reading, *out has usable paths. */
     SETTING_PATH,
-    SETTING_PATHS,        /* several, separated by commas; in YAML a list too */
-    SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is kept unchanged */
+    SETTING_PATHS,         /* several, separated by commas; in YAML a list too */
+    SETTING_NAME_OR_PATH,  /* a path has a dot or a slash in it; a name is kept unchanged */
     SETTING_NAME_OR_PATHS, /* the same, of one name or several paths */
     /* Read by the table's own function, in files alone; choices: what is accepted, for messages */
     SETTING_OWN,  /* one text; a list is its words with blanks between */

@@ -251,7 +251,8 @@ static Status fill_value(void *out, const Reading *r, const SettingTable *table,
         return fill_own(out, r, table, row, value);
     if (row->type == SETTING_NUMBERS && value->type == YAML_SEQUENCE_NODE)
         return fill_numbers(out, r, table, row, value, source);
-    if ((row->type == SETTING_WORDS || row->type == SETTING_PATHS || row->type == SETTING_NAME_OR_PATHS) && value->type == YAML_SEQUENCE_NODE)
+    if ((row->type == SETTING_WORDS || row->type == SETTING_PATHS || row->type == SETTING_NAME_OR_PATHS) &&
+        value->type == YAML_SEQUENCE_NODE)
         return fill_listed(out, r, table, row, value, source);
     if (value->type != YAML_SCALAR_NODE) {
         char accepted[512], said[64];

@@ -46,9 +46,9 @@ Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
     for (uint64_t i = 0; i < 2; i++)
         ground.phase_rad[i] = 2 * pi_rad * random_uniform((uint64_t)scenario->seed, 1, 0, i);
     set_curvature(&ground);
-    const bool invented = scenario->ground.invented;
+    const bool invented = scenario->ground.planted;
     if (invented + (*scenario->ground.store != 0) + (*scenario->ground.elevation != 0) > 1) {
-        log_error("scenario: ground.store, ground.elevation and ground.invented exclude each other: leave one of them");
+        log_error("scenario: ground.store, ground.elevation and ground.planted exclude each other: leave one of them");
         return STATUS_BAD_VALUE;
     }
     if (invented) {

@@ -1,4 +1,4 @@
-/* entities/exercise/hide.h: where entities hide: among the plants of an invented ground, which the node that
+/* entities/exercise/hide.h: where entities hide: among the plants of a synthetic ground, which the node that
  * shows them makes alike (terrain/ground/placed.h).
  *
  * Candidates about a place are drawn by the seed. Of those where the ground bears a vehicle, no plant has to be cleared

@@ -191,7 +191,7 @@ static bool hide_fits(const Scenario *s, const ScenarioGroup *group)
 {
     const char *wrong = NULL;
     if (group->hide == SCENARIO_HIDE_NONE) wrong = *group->beside ? "beside: needs hide: beside" : NULL;
-    else if (!s->ground.invented) wrong = "hide: needs ground.invented: true, whose plants are known";
+    else if (!s->ground.planted) wrong = "hide: needs ground.planted: true, whose plants are known";
     else if (group->route_m.count != 2) wrong = "hide: needs one place in route_m, near which it stands";
     else if ((group->hide == SCENARIO_HIDE_BESIDE) != (*group->beside != 0))
         wrong = "hide: beside and beside: NAME ID need each other";

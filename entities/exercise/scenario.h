@@ -42,7 +42,7 @@ enum {
         (SCENARIO_HIDE_NONE, "none")(SCENARIO_HIDE_OPEN, "open")(SCENARIO_HIDE_TREE_LINE, "tree-line") \
         (SCENARIO_HIDE_WOOD, "wood")(SCENARIO_HIDE_HEDGE, "hedge")(SCENARIO_HIDE_HOLLOW, "hollow") \
         (SCENARIO_HIDE_BESIDE, "beside"), \
-        "where each stands near route_m, on ground.invented: in the open, before or behind the edge of a wood, in it, " \
+        "where each stands near route_m, on ground.planted: in the open, before or behind the edge of a wood, in it, " \
         "at a hedge, in a hollow, or beside an entity of this scenario; none: at route_m") \
     ROW(DOUBLE, , hide_m, 150, 5, 1000, "m", "largest distance from route_m of what hides") \
     ROW(DOUBLE, , occlusion, NAN, 0, 0.95, "", \
@@ -119,11 +119,11 @@ enum {
 #define SCENARIO_GROUND(ROW) \
     ROW(DOUBLE, ground., swell_m, 1.5, 0, 20, "m", \
         "height of the swells of synthetic ground, which are 0.4 to 0.6 km long") \
-    ROW(BOOL, ground., invented, false, \
-        "the invented ground and the plants of a node with terrain.place, of the same seed, on which entities can hide") \
-    ROW(LONG, ground., seed, 1, 0, 2147483647, "", "of ground.invented: the node's seed") \
-    ROW(DOUBLE, ground., relief_m, 15, 0, 200, "m", "of ground.invented: the node's terrain.relief_m") \
-    ROW(DOUBLE, ground., spacing_m, 4, 1, 30, "m", "of ground.invented: the node's terrain.spacing_m") \
+    ROW(BOOL, ground., planted, false, \
+        "the synthetic ground and the plants of a node with terrain.place, of the same seed, on which entities can hide") \
+    ROW(LONG, ground., seed, 1, 0, 2147483647, "", "of ground.planted: the node's seed") \
+    ROW(DOUBLE, ground., relief_m, 15, 0, 200, "m", "of ground.planted: the node's terrain.relief_m") \
+    ROW(DOUBLE, ground., spacing_m, 4, 1, 30, "m", "of ground.planted: the node's terrain.spacing_m") \
     ROW(PATH, ground., store, "", 1024, \
         "terrain store of real ground (`pitviper terrain import`), instead of ground.elevation; empty: none") \
     ROW(PATHS, ground., elevation, "", scenario_path_size, \

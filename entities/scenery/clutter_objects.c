@@ -7,16 +7,18 @@
 /* Of what has stopped: what it did until then. */
 static EntityDrives drives_of(int mode)
 {
-    static const double before = 0.8; /* of an engine that has stopped: between idling and full power; estimate */
+    /* cruising takes a civil vehicle a sixth of its full power; of that the gas of its engine is to be as warm, between
+     * idling (0.6) and full power; estimate */
+    static const double cruises = 0.75, works = 0.9; /* works: a machine at most of its power */
     EntityDrives        drives = {0};
     if (mode == clutter_mode_idles) drives.engine = (float)drives_idle;
+    else if (mode == clutter_mode_works) drives.engine = (float)works;
     else if (mode == clutter_mode_lives) drives.alive = 1;
     else if (mode == clutter_mode_burns) drives.burning = 1;
-    else if (mode >= clutter_mode_stopped) drives.engine = (float)before;
+    else if (mode >= clutter_mode_stopped) drives.engine = (float)cruises;
     else if (mode >= clutter_mode_drives) {
-        const double speed_mps = clutter_speed_mps[mode - clutter_mode_drives];
-        drives.engine = (float)fmin(1, drives_idle + (1 - drives_idle) * speed_mps / 10);
-        drives.speed_mps = (float)speed_mps;
+        drives.engine = (float)cruises;
+        drives.speed_mps = (float)clutter_speed_mps[mode - clutter_mode_drives];
     }
     return drives;
 }

@@ -42,7 +42,7 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     if (row->length_low_m > 0 && !(row->length_low_m >= 0.1))
         return table_rows_refuse(rows, number, "length_low_m", "0, or at least 0.1");
     if (row->running + row->recent > 1) return table_rows_refuse(rows, number, "recent", "at most 1 - running");
-    if (row->heat != CLUTTER_ENGINE && row->running + row->recent > 0)
+    if (row->heat != CLUTTER_ENGINE && row->heat != CLUTTER_WORKS && row->running + row->recent > 0)
         return table_rows_refuse(rows, number, "running", "0 without an engine (heat)");
     if (row->heat == CLUTTER_DRIVES && row->where >= CLUTTER_YARDS)
         return table_rows_refuse(rows, number, "heat", "that of what stands: only on road, lane and track is driven");
@@ -67,7 +67,7 @@ Status clutter_table_read(ClutterTable *out, const char *path)
         {"spread_m", TABLE_DOUBLE, FIELD(spread_m), .low = 0, .high = 80},
         {"length_low_m", TABLE_DOUBLE, FIELD(length_low_m), .low = 0, .high = 20},
         {"length_high_m", TABLE_DOUBLE, FIELD(length_high_m), .low = 0, .high = 20},
-        {"heat", TABLE_CHOICE, FIELD(heat), .choices = "cold, engine, drives, lives, burns"},
+        {"heat", TABLE_CHOICE, FIELD(heat), .choices = "cold, engine, works, drives, lives, burns"},
         {"running", TABLE_DOUBLE, FIELD(running), .low = 0, .high = 1},
         {"recent", TABLE_DOUBLE, FIELD(recent), .low = 0, .high = 1},
     };

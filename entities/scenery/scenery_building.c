@@ -16,6 +16,20 @@ static double skirt(const BuildingWork *w)
     return fmin(least_m - lowest_m, most_m);
 }
 
+/* Whether a place is inside the outline, and not nearer than this to its sides. */
+static bool is_well_inside(const BuildingWork *w, const double at[2], double least_m)
+{
+    bool in = false;
+    for (int k = 0; k < w->n; k++) {
+        const double *a = w->p[k], *b = w->p[(k + 1) % w->n], d[2] = {b[0] - a[0], b[1] - a[1]};
+        const double  q[2] = {at[0] - a[0], at[1] - a[1]};
+        const double  t = clamp((q[0] * d[0] + q[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]), 0, 1);
+        if (hypot(q[0] - t * d[0], q[1] - t * d[1]) < least_m) return false;
+        if ((a[1] > at[1]) != (b[1] > at[1]) && at[0] < a[0] + (at[1] - a[1]) * d[0] / d[1]) in = !in;
+    }
+    return in;
+}
+
 static void chimneys(BuildingWork *w)
 {
     static const double over_m = 0.9;
@@ -33,6 +47,7 @@ static void chimneys(BuildingWork *w)
         const double u = length > 2.8 ? from + share * (length - 2 * from)
                                       : (k + 0.5) * length / count + (k - 0.5 * (count - 1)) * 1.0;
         const double at[2] = {w->ridge[0][0] + u * along[0], w->ridge[0][1] + u * along[1]};
+        if (!is_well_inside(w, at, 0.45)) continue;
         cell_box(w->cell, slot, at, along, 0.32, 0.28, w->ridge_top_m - 0.9, w->ridge_top_m + over_m);
     }
 }
@@ -48,6 +63,7 @@ static void vents(BuildingWork *w)
     for (int k = 0; k < count; k++) {
         const double u = (k + 0.5) * length / count;
         const double at[2] = {w->ridge[0][0] + u * along[0], w->ridge[0][1] + u * along[1]};
+        if (!is_well_inside(w, at, 0.75)) continue;
         cell_box(w->cell, slot, at, along, 0.5, 0.5, w->ridge_top_m - 0.4, w->ridge_top_m + 0.6);
     }
 }
@@ -55,7 +71,7 @@ static void vents(BuildingWork *w)
 void building_make(CellMesh *cell, const Culture *culture, const Building *b, const double origin[3],
                    SceneryGround *ground_m, void *user)
 {
-    BuildingWork w = {.b = b, .cell = cell, .n = b->corners, .ground_m = ground_m, .user = user};
+    BuildingWork w = {.culture = culture, .b = b, .cell = cell, .n = b->corners, .ground_m = ground_m, .user = user};
     w.p = malloc((size_t)w.n * sizeof *w.p);
     if (!w.p) {
         cell->status = STATUS_NO_MEMORY;

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 
 enum {
-    parts_enough = 60000, /* a cell with more is several models */
+    parts_enough = 16384, /* a cell with more is several models */
     triangles_enough = 4000000,
-    items_most = 1 << 25, /* buildings, points and pieces of lines */
-    run_most = 256,       /* pieces of a line made at once */
+    triangles_most = 1 << 27, /* of all cells: some 9 GB */
+    items_most = 1 << 25,     /* buildings, points and pieces of lines */
+    run_most = 256,           /* pieces of a line made at once */
 };
 
 typedef enum ItemKind { ITEM_BUILDING, ITEM_PIECE, ITEM_POINT } ItemKind;
@@ -19,8 +20,10 @@ typedef struct Item {
     int32_t kind, number, piece;
 } Item;
 
+static const double place_most_m = 2e6, wide_most_m = 5000, high_most_m = 1000, base_most_m = 2e4;
+
 typedef struct Items {
-    int   count, room;
+    int   count, room, left_out;
     Item *item;
 } Items;
 
@@ -50,31 +53,84 @@ static Status add_item(Items *items, double x_m, double y_m, int kind, int numbe
     return STATUS_OK;
 }
 
-static Status list_items(Items *items, const Culture *c)
+/* Whether a mesh of metres can be made of a record: not of one that is larger than anything built, or lies off any
+ * landscape. */
+static bool is_of_this_world(const double low[2], const double high[2], double base_m, double high_m)
+{
+    for (int a = 0; a < 2; a++)
+        if (!(fabs(low[a]) < place_most_m && fabs(high[a]) < place_most_m)) return false;
+    return fabs(base_m) < base_most_m && high_m < high_most_m;
+}
+
+static void box_of(double low[2], double high[2], const Culture *c, int first, int corners)
+{
+    for (int a = 0; a < 2; a++) low[a] = INFINITY, high[a] = -INFINITY;
+    for (int k = first; k < first + corners; k++)
+        for (int a = 0; a < 2; a++)
+            low[a] = fmin(low[a], c->corner_m[k][a]), high[a] = fmax(high[a], c->corner_m[k][a]);
+}
+
+static Status list_buildings(Items *items, const Culture *c)
 {
     Status status = STATUS_OK;
     for (int n = 0; n < c->buildings && status == STATUS_OK; n++) {
-        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-        for (int k = 0; k < c->building[n].corners; k++)
-            for (int a = 0; a < 2; a++) {
-                const double m = c->corner_m[c->building[n].first_corner + k][a];
-                low[a] = fmin(low[a], m), high[a] = fmax(high[a], m);
-            }
-        status = add_item(items, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), ITEM_BUILDING, n, 0);
+        const Building *b = &c->building[n];
+        double          low[2], high[2];
+        box_of(low, high, c, b->first_corner, b->corners);
+        const bool fits = high[0] - low[0] < wide_most_m && high[1] - low[1] < wide_most_m;
+        if (!fits || !is_of_this_world(low, high, (double)b->base_m, (double)b->ridge_m)) items->left_out++;
+        else status = add_item(items, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), ITEM_BUILDING, n, 0);
     }
-    for (int n = 0; n < c->points && status == STATUS_OK; n++)
-        status = add_item(items, c->point[n].x_m, c->point[n].y_m, ITEM_POINT, n, 0);
+    return status;
+}
+
+static Status list_points(Items *items, const Culture *c)
+{
+    Status status = STATUS_OK;
+    for (int n = 0; n < c->points && status == STATUS_OK; n++) {
+        const CulturePoint *p = &c->point[n];
+        const double        at[2] = {p->x_m, p->y_m};
+        const float         most = fmaxf(p->size_m[0], fmaxf(p->size_m[1], p->size_m[2]));
+        const float         least = fminf(p->size_m[0], fminf(p->size_m[1], p->size_m[2]));
+        if (!is_of_this_world(at, at, (double)p->base_m, (double)most) || least < 0.01F) items->left_out++;
+        else status = add_item(items, p->x_m, p->y_m, ITEM_POINT, n, 0);
+    }
+    return status;
+}
+
+static Status list_pieces(Items *items, const Culture *c)
+{
+    Status status = STATUS_OK;
     for (int n = 0; n < c->lines && status == STATUS_OK; n++) {
-        const int  pieces = line_pieces(c, &c->line[n]);
-        LineCursor at = {0};
+        const CultureLine *line = &c->line[n];
+        const int          pieces = line_pieces(c, line);
+        LineCursor         at = {0};
+        double             low[2], high[2];
+        box_of(low, high, c, line->first_corner, line->corners);
+        if (pieces > 0 && !is_of_this_world(low, high, 0, (double)fmaxf(line->width_m, line->height_m))) {
+            items->left_out++;
+            continue;
+        }
         for (int k = 0; k < pieces && status == STATUS_OK; k++) {
             double xy_m[2];
-            line_piece_middle(xy_m, &at, c, &c->line[n], k);
+            line_piece_middle(xy_m, &at, c, line, k);
             status = add_item(items, xy_m[0], xy_m[1], ITEM_PIECE, n, k);
         }
     }
+    return status;
+}
+
+static Status list_items(Items *items, const Culture *c)
+{
+    Status status = list_buildings(items, c);
+    if (status == STATUS_OK) status = list_points(items, c);
+    if (status == STATUS_OK) status = list_pieces(items, c);
+    if (items->left_out > 0)
+        log_warn("scenery: records left out: %d; they are wider than %g m, higher than %g m, thinner than 1 cm or "
+                 "farther than %g m away",
+                 items->left_out, wide_most_m, high_most_m, place_most_m);
     if (status != STATUS_OK) return status;
-    qsort(items->item, (size_t)items->count, sizeof *items->item, item_order);
+    if (items->count > 1) qsort(items->item, (size_t)items->count, sizeof *items->item, item_order);
     return status;
 }
 
@@ -85,6 +141,7 @@ typedef struct CellsMade {
     SceneryObject *object;
     uint64_t     **id;
     int            count, room;
+    long long      triangles;
 } CellsMade;
 
 static void free_made(CellsMade *made)
@@ -98,6 +155,11 @@ static Status put_model(CellsMade *made, CellMesh *cell, const Item *at, const d
     if (cell->status == STATUS_OK && cell->model.part_count == 0) {
         cell_mesh_free(cell);
         return STATUS_OK;
+    }
+    made->triangles += cell->model.triangle_count;
+    if (cell->status == STATUS_OK && made->triangles > triangles_most) {
+        log_error("scenery: more than %d triangles of buildings and works; take a smaller area", triangles_most);
+        cell->status = STATUS_BAD_VALUE;
     }
     if (made->count == made->room) {
         const int    wanted = made->room ? 2 * made->room : 16;

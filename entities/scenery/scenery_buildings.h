@@ -5,8 +5,8 @@
  * north, y east, z down, origin at the middle of the cell at the lowest base in it; the object's pose turns them into
  * ENU. A cell whose parts or triangles would be too many for one model is several.
  *
- * Parts: of a record each name and material once; Scenery.part_of names the record's id. Names, materials and roles:
- * ModelPart, etc/materials.csv, BRIEF of parts in etc/reference/terrain.md ("Buildings").
+ * Parts: a record has one for each name, material and role; Scenery.part_of has the record's id. Which there are:
+ * etc/reference/terrain.md ("Buildings and works as meshes").
  *
  * Closed: all parts of a record together are closed shells (every directed edge has its reverse): panes and doors close
  * the openings of walls, so a single part need not be closed; model_check holds, model_validate does not. */
@@ -22,8 +22,10 @@ static const double scenery_overhang_m = 0.4; /* of roofs, across the wall; less
 /* ENU z of the ground at a place; NaN: not known there. */
 typedef double SceneryGround(void *user, double x_m, double y_m);
 
-/* Appends the cells of all buildings, lines and points of a culture. The same records give the same bits. ground_m:
- * NULL: as high as the bases. STATUS_NO_MEMORY: the scenery holds what it held. */
+/* Appends the cells of all buildings, lines and points of a culture (culture_index was called: else doors know no
+ * drives). The same records give the same bits. ground_m: NULL: as high as the bases. STATUS_NO_MEMORY, or
+ * more than 2^25 records and pieces of lines or 2^27 triangles: STATUS_BAD_VALUE, logged: the scenery holds what it
+ * held. */
 Status scenery_add_buildings(Scenery *scenery, const Culture *culture, SceneryGround *ground_m, void *user);
 
 #endif

@@ -11,9 +11,9 @@
 
 double outline_area_m2(const double (*p)[2], int n);
 /* Cuts a simple counter-clockwise polygon into n - 2 triangles (indices, counter-clockwise), by ears, the least
- * slender first. false: no memory, or a triangle had to be turned over (a polygon that crosses itself); it still has n
- * - 2 triangles then, unless memory is out. O(n^2) for usual outlines. */
-bool outline_triangulate(int (*triangle)[3], const double (*p)[2], int n);
+ * slender first. false: a triangle had to be turned over (a polygon that crosses itself); it still has n - 2 triangles
+ * then. Without memory: false, status STATUS_NO_MEMORY, which is else left alone. O(n^2) for usual outlines. */
+bool outline_triangulate(int (*triangle)[3], Status *status, const double (*p)[2], int n);
 /* Moves every edge outwards by out_m (negative: inwards), corners mitred. false: the result would cross itself or lose
  * an edge. */
 bool outline_offset(double (*to)[2], const double (*p)[2], int n, double out_m);
@@ -106,6 +106,7 @@ double record_random(uint64_t id, uint32_t stream);
 
 /* A building being made. */
 typedef struct BuildingWork {
+    const Culture  *culture;
     const Building *b;
     CellMesh       *cell;
     int             n;

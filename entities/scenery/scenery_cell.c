@@ -84,6 +84,12 @@ uint32_t cell_vertex(CellMesh *cell, const double p[3], const double n[3])
 
 void cell_triangle(CellMesh *cell, int slot, uint32_t a, uint32_t b, uint32_t c)
 {
+    /* two corners at one place: its edges cancel, so what is closed is so without it */
+    const size_t size = sizeof *cell->model.vertex;
+    if (cell->status != STATUS_OK || !memcmp(cell->model.vertex[a], cell->model.vertex[b], size) ||
+        !memcmp(cell->model.vertex[b], cell->model.vertex[c], size) ||
+        !memcmp(cell->model.vertex[c], cell->model.vertex[a], size))
+        return;
     if (!grow(cell, &cell->pending, &cell->pending_room, cell->pendings + 1, sizeof *cell->pending)) return;
     uint32_t *t = cell->pending[cell->pendings++];
     t[0] = a, t[1] = b, t[2] = c, t[3] = (uint32_t)slot;
@@ -117,8 +123,8 @@ void cell_face(CellMesh *cell, int slot, const double (*p)[3], int n)
             flat[k][1] = normal[axis] > 0 ? p[k][y] : p[k][x];
             vertex[k] = cell_vertex(cell, p[k], normal);
         }
-        outline_triangulate(triangle, (const double(*)[2])flat, n);
-        for (int t = 0; t < n - 2; t++)
+        outline_triangulate(triangle, &cell->status, (const double(*)[2])flat, n);
+        for (int t = 0; t < n - 2 && cell->status == STATUS_OK; t++)
             cell_triangle(cell, slot, vertex[triangle[t][0]], vertex[triangle[t][1]], vertex[triangle[t][2]]);
     }
     if (n > 16) free(flat), free(triangle), free(vertex);

@@ -54,8 +54,8 @@ Status clutter_add(ClutterWork *work, ClutterThing t)
     if (row->heat == CLUTTER_LIVES) t.mode = clutter_mode_lives;
     else if (row->heat == CLUTTER_BURNS) t.mode = clutter_mode_burns;
     else if (row->heat == CLUTTER_DRIVES) t.mode = clutter_mode_drives + (int)row->where;
-    else if (row->heat == CLUTTER_ENGINE && u < row->running) t.mode = clutter_mode_idles;
-    else if (row->heat == CLUTTER_ENGINE && u < row->running + row->recent)
+    else if (u < row->running) t.mode = row->heat == CLUTTER_WORKS ? clutter_mode_works : clutter_mode_idles;
+    else if (u < row->running + row->recent)
         t.mode = clutter_mode_stopped + (int)(clutter_unit(t.rank, 92) * clutter_stops);
     t.radius_m = 0.5f * hypotf(size_m[0], size_m[1]);
     work->thing[work->things++] = t;

@@ -52,6 +52,7 @@ static const double clutter_speed_mps[CLUTTER_YARDS] = {60 / 3.6, 30 / 3.6, 15 /
 typedef enum ClutterHeat {
     CLUTTER_COLD,   /* sun and air alone */
     CLUTTER_ENGINE, /* an engine: running, stopped lately, or cold */
+    CLUTTER_WORKS,  /* an engine that is under load where it runs: of machines at work */
     CLUTTER_DRIVES, /* drives along its way */
     CLUTTER_LIVES,  /* an animal */
     CLUTTER_BURNS,  /* flames or embers */
@@ -96,6 +97,7 @@ typedef struct ClutterThing {
 enum {
     clutter_mode_cold,
     clutter_mode_idles,
+    clutter_mode_works,
     clutter_mode_lives,
     clutter_mode_burns,
     clutter_mode_drives,                                        /* one a kind of line */

@@ -71,14 +71,18 @@ static int next_ear(const Clip *c, int from, int left, bool *clean)
     return best < 0 ? fallback : best;
 }
 
-bool outline_triangulate(int (*triangle)[3], const double (*p)[2], int n)
+bool outline_triangulate(int (*triangle)[3], Status *status, const double (*p)[2], int n)
 {
     int  own[2][64];
     int *large = n > 64 ? malloc(2 * (size_t)n * sizeof *large) : NULL;
     Clip c = {p, n > 64 ? large : own[0], n > 64 ? large + n : own[1]};
     bool clean = true;
     int  made = 0;
-    if (n < 3 || (n > 64 && !large)) return false;
+    if (n < 3) return false;
+    if (n > 64 && !large) {
+        *status = STATUS_NO_MEMORY;
+        return false;
+    }
     for (int k = 0; k < n; k++) c.before[k] = (k + n - 1) % n, c.after[k] = (k + 1) % n;
     for (int left = n, at = 0; left > 3; left--) {
         const int v = next_ear(&c, at, left, &clean), a = c.before[v], b = c.after[v];

@@ -100,7 +100,8 @@ static void slab_face(BuildingWork *w, const double (*node)[3], const int *index
     int    largest = -1;
     double most_m2 = least_m2;
     for (int k = 0; k < count && flat && triangle; k++) memcpy(flat[k], node[index ? index[k] : k], sizeof flat[k]);
-    if (flat && triangle && outline_triangulate(triangle, (const double(*)[2])flat, count))
+    if (holed && (!flat || !triangle)) w->cell->status = STATUS_NO_MEMORY;
+    if (flat && triangle && outline_triangulate(triangle, &w->cell->status, (const double(*)[2])flat, count))
         for (int t = 0; t < count - 2; t++) {
             double p[3][2];
             for (int k = 0; k < 3; k++) memcpy(p[k], flat[triangle[t][k]], sizeof p[k]);
@@ -205,7 +206,8 @@ static void inner_place(double out[2], const BuildingWork *w)
     int(*t)[3] = malloc((size_t)w->n * sizeof *t);
     double best = 0;
     out[0] = w->p[0][0], out[1] = w->p[0][1];
-    if (t && outline_triangulate(t, (const double(*)[2])w->p, w->n))
+    if (!t) w->cell->status = STATUS_NO_MEMORY;
+    if (t && outline_triangulate(t, &w->cell->status, (const double(*)[2])w->p, w->n))
         for (int k = 0; k < w->n - 2; k++) {
             const double corner[3][2] = {{w->p[t[k][0]][0], w->p[t[k][0]][1]},
                                          {w->p[t[k][1]][0], w->p[t[k][1]][1]},
@@ -365,12 +367,15 @@ static void slab_of_plan(BuildingWork *w, const RoofPlan *plan, const bool *gabl
                   (double[2]){z0, z0});
 }
 
-/* Which edges end a ridge: with two right corners, shorter than their neighbours, shortest first; of four edges the
- * two across the ridge. Returns how many. */
+/* Which edges end a ridge: with two right corners, no longer than their neighbours, or those of a short wing, shortest
+ * first; of four edges the two across the ridge. Returns how many. */
 static int choose_gables(bool *gable, const BuildingWork *w)
 {
     const int n = w->n;
     int       chosen = 0;
+    double    longest_m = 0;
+    for (int k = 0; k < n; k++)
+        longest_m = fmax(longest_m, hypot(w->p[(k + 1) % n][0] - w->p[k][0], w->p[(k + 1) % n][1] - w->p[k][1]));
     for (int k = 0; k < n; k++) gable[k] = false;
     for (;;) {
         int    best = -1;
@@ -382,7 +387,8 @@ static int choose_gables(bool *gable, const BuildingWork *w)
             const double  lu = hypot(u[0], u[1]), ld = hypot(d[0], d[1]), lv = hypot(v[0], v[1]);
             const bool right = u[0] * d[1] - u[1] * d[0] > 0.94 * lu * ld && d[0] * v[1] - d[1] * v[0] > 0.94 * ld * lv;
             const double along = fabs(cos((double)w->b->ridge_rad) * d[0] + sin((double)w->b->ridge_rad) * d[1]);
-            const bool   ends = n == 4 ? along < 0.7072 * ld : ld <= 1.001 * lu && ld <= 1.001 * lv;
+            const bool   ends = n == 4 ? along < 0.7072 * ld
+                                       : ld <= 1.001 * fmin(lu, lv) || (ld <= 2 * fmin(lu, lv) && ld <= 0.6 * longest_m);
             if (!right || !ends || gable[k] || gable[(k + n - 1) % n] || gable[(k + 1) % n]) continue;
             if (ld < best_length) best = k, best_length = ld;
         }

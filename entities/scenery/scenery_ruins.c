@@ -53,7 +53,8 @@ static void heaps_inside(BuildingWork *w, int rubble, double z)
     static const double least_m = 0.8, most = 6, along[2] = {1, 0};
     int(*t)[3] = malloc((size_t)w->n * sizeof *t);
     int made = 0;
-    if (t && outline_triangulate(t, (const double(*)[2])w->p, w->n))
+    if (!t) w->cell->status = STATUS_NO_MEMORY;
+    if (t && outline_triangulate(t, &w->cell->status, (const double(*)[2])w->p, w->n))
         for (int k = 0; k < w->n - 2 && made < most; k++) {
             double corner[3][2], around_m = 0, middle[3] = {0, 0, z};
             for (int i = 0; i < 3; i++) memcpy(corner[i], w->p[t[k][i]], sizeof corner[i]);

@@ -306,17 +306,21 @@ static int follow(const Skeleton *s, const bool *used, int at)
 }
 
 /* Whether a face seen from above (of a gable: along its edge, from outside) is cut into positive triangles. */
-static bool is_positive(const Skeleton *s, const int *index, int count, int face)
+static bool is_positive(const Skeleton *s, Status *status, const int *index, int count, int face)
 {
     double(*flat)[2] = malloc((size_t)count * sizeof *flat);
     int(*triangle)[3] = malloc((size_t)count * sizeof *triangle);
     bool ok = flat && triangle;
+    if (!ok) *status = STATUS_NO_MEMORY;
     for (int k = 0; k < count && ok; k++) {
         const double *p = s->node[index[k]];
         const bool    gable = face < s->n && s->edge[face][2] == 0;
         flat[k][0] = gable ? dot2(s->edge[face], p) : p[0], flat[k][1] = gable ? p[2] : p[1];
+        /* a gable stands over its edge alone */
+        const double *a = s->node[face % s->n], *b = s->node[(face + 1) % s->n];
+        if (gable) ok = flat[k][0] > dot2(s->edge[face], a) - snap_m && flat[k][0] < dot2(s->edge[face], b) + snap_m;
     }
-    ok = ok && outline_triangulate(triangle, (const double(*)[2])flat, count);
+    ok = ok && outline_triangulate(triangle, status, (const double(*)[2])flat, count);
     for (int t = 0; t < count - 2 && ok; t++) {
         const double *a = flat[triangle[t][0]], *b = flat[triangle[t][1]], *c = flat[triangle[t][2]];
         ok = cross2((double[2]){b[0] - a[0], b[1] - a[1]}, (double[2]){c[0] - a[0], c[1] - a[1]}) > 1e-9;
@@ -325,7 +329,7 @@ static bool is_positive(const Skeleton *s, const int *index, int count, int face
     return ok;
 }
 
-static bool collect(RoofPlan *out, const Skeleton *s, bool *used)
+static bool collect(RoofPlan *out, Status *status, const Skeleton *s, bool *used)
 {
     int at = 0;
     for (int start = 0; start < s->links; start++) {
@@ -338,7 +342,7 @@ static bool collect(RoofPlan *out, const Skeleton *s, bool *used)
             if (s->link[k].to == s->link[start].from) break;
         }
         const int face = s->link[start].face;
-        if (k < 0 || at - first < 3 || !is_positive(s, out->index + first, at - first, face)) return false;
+        if (k < 0 || at - first < 3 || !is_positive(s, status, out->index + first, at - first, face)) return false;
         out->edge[out->faces] = face < s->n ? face : -1;
         out->first[out->faces++] = first;
         out->first[out->faces] = at;
@@ -382,7 +386,7 @@ bool roof_plan_make(RoofPlan *out, Status *status, const double (*p)[2], int n, 
         out->edge = malloc((size_t)s->links * sizeof *out->edge);
         out->first = calloc((size_t)s->links + 1, sizeof *out->first);
         if (!out->node || !out->index || !out->edge || !out->first) *status = STATUS_NO_MEMORY;
-        else made = !s->full && collect(out, s, used);
+        else made = !s->full && collect(out, status, s, used);
         if (made) {
             memcpy(out->node, s->node, (size_t)s->nodes * sizeof *out->node);
             out->nodes = s->nodes, out->corners = n;

@@ -5,7 +5,13 @@
  * opening goes in through a splayed frame to a pane or leaf. */
 #include "entities/scenery/scenery_buildings_private.h"
 
-enum { columns_most = 48, storeys_most = 100, lines_most = 2 * columns_most, rows_most = 2 * storeys_most + 1 };
+enum {
+    windows_most = 20000,
+    columns_most = 48,
+    storeys_most = 100,
+    lines_most = 2 * columns_most,
+    rows_most = 2 * storeys_most + 1
+};
 
 static const double pane_m = 0.1, broken_m = 0.25, frame_m = 0.07, corner_m = 0.5;
 
@@ -66,7 +72,7 @@ static void set_storeys(Facade *f, const BuildingWork *w)
     for (int k = 0; k < f->storeys; k++) {
         const bool church = w->b->use == BUILDING_CHURCH;
         f->head_m[k] = k * high_m + (church ? 0.85 * w->top_m : fmin(0.78 * high_m, 2.25));
-        f->sill_m[k] = church ? 0.35 * w->top_m : f->head_m[k] - fmin(0.5 * high_m, 1.35);
+        f->sill_m[k] = f->head_m[k] - (church ? fmin(0.5 * w->top_m, 4.5) : fmin(0.5 * high_m, 1.35));
     }
     if (w->b->use == BUILDING_CHURCH) f->storeys = 1;
 }
@@ -252,36 +258,45 @@ static void make_grid(BuildingWork *w, Facade *f)
         }
 }
 
-/* The wall with the door: the longest whose ground is near the floor's height; of a church the shortest that holds it.
- */
-static int front_of(const BuildingWork *w)
+/* What speaks for a wall as that with the door: ground near the floor's height, a drive or yard before it, its length;
+ * of churches and sheds (garages) it is a short one. */
+static double worth_as_front(const BuildingWork *w, const Facade *f)
 {
-    int    best = 0;
-    double most = -INFINITY;
-    for (int k = 0; k < w->n; k++) {
-        const double *a = w->p[k], *b = w->p[(k + 1) % w->n], length_m = hypot(b[0] - a[0], b[1] - a[1]);
-        Facade        f;
-        f.a = a, f.b = b, f.along[0] = (b[0] - a[0]) / length_m, f.along[1] = (b[1] - a[1]) / length_m;
-        const double over_m = fabs(ground_over_floor(w, &f, 0.5 * length_m));
-        const double size = w->b->use == BUILDING_CHURCH && length_m > 4 ? 1 / length_m : length_m;
-        const double worth = (over_m < 0.5 ? 1e6 : 0) + size + 1e-3 * record_random(w->b->id, 16 + (uint32_t)k);
-        if (worth > most) most = worth, best = k;
-    }
-    return best;
+    const double middle = 0.5 * f->length_m, over_m = fabs(ground_over_floor(w, f, middle));
+    const bool   ends = w->b->use == BUILDING_CHURCH || w->b->use == BUILDING_SHED;
+    const double size = !ends ? f->length_m : f->length_m > 2.6 ? 30 / f->length_m : 0;
+    double       before[3];
+    at_wall(before, w, f, middle, 0, -2);
+    const bool paved = culture_surface_at(w->culture, before[0] + w->origin[0], before[1] + w->origin[1]) != 0;
+    return (over_m < 0.5 ? 1e6 : 0) + (paved && f->length_m > 2.6 ? 30 : 0) + size +
+           1e-3 * record_random(w->b->id, 16 + (uint32_t)f->number);
+}
+
+static void set_wall(Facade *f, const BuildingWork *w, int k)
+{
+    f->number = k, f->a = w->p[k], f->b = w->p[(k + 1) % w->n];
+    f->length_m = hypot(f->b[0] - f->a[0], f->b[1] - f->a[1]);
+    f->along[0] = (f->b[0] - f->a[0]) / f->length_m, f->along[1] = (f->b[1] - f->a[1]) / f->length_m;
 }
 
 void building_walls(BuildingWork *w)
 {
     static _Thread_local Facade f; /* 80 KB */
-    const int                   front = front_of(w);
+    double                      around_m = 0, most = -INFINITY;
+    int                         front = 0;
     for (int k = 0; k < w->n; k++) {
-        f.number = k, f.a = w->p[k], f.b = w->p[(k + 1) % w->n];
-        f.length_m = hypot(f.b[0] - f.a[0], f.b[1] - f.a[1]);
-        f.along[0] = (f.b[0] - f.a[0]) / f.length_m, f.along[1] = (f.b[1] - f.a[1]) / f.length_m;
+        set_wall(&f, w, k);
+        const double worth = worth_as_front(w, &f);
+        around_m += f.length_m;
+        if (worth > most) most = worth, front = k;
+    }
+    const bool bare = around_m / 3 * w->b->levels > windows_most; /* as no building is: without openings */
+    for (int k = 0; k < w->n; k++) {
+        set_wall(&f, w, k);
         set_storeys(&f, w);
         set_columns(&f, w, k == front);
         set_lines(&f, w);
-        if (f.columns > 0 && f.rows > 1) {
+        if (f.columns > 0 && f.rows > 1 && !bare) {
             make_grid(w, &f);
             continue;
         }

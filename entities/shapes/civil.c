@@ -164,6 +164,7 @@ static void build_excavator(MeshBuilder *b)
     parts_box(b, -2.22, -0.55, -1.30, 1.30, 1.05, 2.12);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
     parts_bar(b, -1.7, 0.75, 2.05, -1.7, 0.75, 2.62, 0.07);
+    parts_bar(b, -1.75, 0.30, 2.16, -1.0, 0.30, 2.16, 0.13); /* silencer */
     mesh_part(b, 0, "cab", "metal_dark", HEAT_CABIN);
     static const double cab[5][2] = {{-0.25, 1.60}, {1.42, 1.60}, {1.50, 1.95}, {1.15, 2.05}, {-0.25, 2.05}};
     parts_profile(b, 5, cab, -1.28, -0.40);
@@ -211,6 +212,8 @@ static void build_generator(MeshBuilder *b)
     for (int i = 0; i < 5; i++) parts_boxes(b, 0.45 + 0.15 * i, 0.53 + 0.15 * i, 0.61, 0.63, 0.9, 1.4);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
     parts_bar(b, 0.75, 0.25, 1.65, 0.75, 0.25, 1.85, 0.055);
+    for (int i = 0; i < 4; i++)
+        parts_box(b, 0.45 + 0.14 * i, 0.54 + 0.14 * i, -0.40, 0.05, 1.70, 1.735); /* above the silencer */
     mesh_part(b, 0, "chassis", "metal_dark", HEAT_PASSIVE);
     parts_box(b, -1.50, 1.35, -0.50, 0.50, 0.42, 0.56);
     for (int side = -1; side <= 1; side += 2) parts_bar(b, 1.2, side * 0.42, 0.48, 2.35, side * 0.03, 0.50, 0.04);

@@ -87,6 +87,8 @@ static void build_deer(MeshBuilder *b)
     legs(b, 0.28, -0.30, 0.075, 0.50, 0.02, "hide_brown");
 }
 
+static const double straw_m = 0.1; /* what a day warms of pressed straw */
+
 static void build_bale(MeshBuilder *b)
 {
     mesh_part(b, 0, "straw", "grass_dry", HEAT_PASSIVE);
@@ -174,5 +176,7 @@ Status parametric_countryside(Model *out, const char *name, double sag_m)
     kinds[k].build(b);
     const Status status = mesh_builder_finish(out, b);
     if (status == STATUS_OK) out->sag_m = sag_m;
+    for (int p = 0; status == STATUS_OK && kinds[k].build == build_bale && p < out->part_count; p++)
+        out->part[p].thickness_m = straw_m;
     return status;
 }

@@ -71,7 +71,8 @@ static void build_net(MeshBuilder *b)
     mesh_part(b, 0, "poles", "wood_pine", HEAT_PASSIVE);
     for (int i = -1; i <= 1; i += 2)
         for (int j = -1; j <= 1; j += 2)
-            parts_bar(b, i * net_top_half_m[0], j * 1.9, 0, i * net_top_half_m[0], j * net_top_half_m[1], 2.98, 0.03);
+            parts_bar(b, i * net_top_half_m[0], j * 1.9, 0.01, i * net_top_half_m[0], j * net_top_half_m[1], 2.98,
+                      0.03);
 }
 
 /* ---- the wall -------------------------------------------------------------------------------------------- */

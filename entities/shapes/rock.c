@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 enum { cuts = 18, octahedron = 8, side = 14, face_points = (side + 1) * (side + 2) / 2 };
+static const double day_depth_m = 0.25; /* what a day warms of granite: sqrt(k day / (pi rho c)) is 0.2 m */
 static const double half_m[3] = {0.8, 0.6, 0.52}, sunk = 0.45; /* sunk: share of the half height that is below ground */
 
 static double drawn(uint32_t seed, uint32_t stream, uint32_t k) { return random_uniform(seed, stream, 0, k); }
@@ -74,6 +75,6 @@ Status parametric_rock(Model *out, const char *name, double sag_m)
                 }
     }
     const Status status = mesh_builder_finish(out, b);
-    if (status == STATUS_OK) out->sag_m = sag_m;
+    if (status == STATUS_OK) out->sag_m = sag_m, out->part[0].thickness_m = day_depth_m;
     return status;
 }

@@ -94,8 +94,8 @@ static double stood_before_s(const EntityTable *table, const EntitySlot *slot)
 {
     enum { stream = 83 };
     if (!isnan(table->config.stood_s)) return table->config.stood_s;
-    return stood_least_s * pow(stood_most_s / stood_least_s,
-                               random_uniform(table->config.seed, stream, 0, entity_key(slot->id)));
+    return stood_least_s *
+           pow(stood_most_s / stood_least_s, random_uniform(table->config.seed, stream, 0, entity_key(slot->id)));
 }
 
 static void begin_stand(EntityTable *table, EntitySlot *slot, const double p_ecef[3], bool is_first, double t_s)

@@ -30,6 +30,13 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
         double *of = which ? row.law.albedo : row.law.extinction_m2_kg;
         of[effect_band_pan] = (of[effect_band_b] + of[effect_band_g] + of[effect_band_r]) / 3;
     }
+    /* delta-Eddington (Joseph, Wiscombe & Weinman 1976): what is scattered forward goes on */
+    const double peak = row.law.asymmetry_ir * row.law.asymmetry_ir;
+    for (int b = effect_band_mwir; b <= effect_band_lwir; b++) {
+        const double albedo = row.law.albedo[b], left = 1 - albedo * peak;
+        row.law.extinction_m2_kg[b] *= left;
+        row.law.albedo[b] = albedo * (1 - peak) / left;
+    }
     ((EffectTable *)user)->law[row.kind] = row.law;
     return STATUS_OK;
 }
@@ -51,6 +58,8 @@ static const TableColumn own_columns[] = {
     {"life_s", TABLE_DOUBLE, FIELD(law.life_s), .low = 1e-3, .high = 1e4},
     {"time_power", TABLE_DOUBLE, FIELD(law.time_power), .low = 0, .high = 1},
     {"billow", TABLE_DOUBLE, FIELD(law.billow), .low = 0, .high = 1},
+    {"asymmetry_ir", TABLE_DOUBLE, FIELD(law.asymmetry_ir), .low = 0, .high = 0.95, .absent = TABLE_LATER},
+    {"ground_share", TABLE_DOUBLE, FIELD(law.ground_share), .low = 0, .high = 1, .absent = TABLE_LATER},
     {"co2_share", TABLE_DOUBLE, FIELD(law.co2_share), .low = 0, .high = 1, .absent = TABLE_LATER},
     {"h2o_share", TABLE_DOUBLE, FIELD(law.h2o_share), .low = 0, .high = 1, .absent = TABLE_LATER},
 };
@@ -118,7 +127,9 @@ bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff
     out->across_m = puff->scale * (law->radius_start_m + (law->radius_end_m - law->radius_start_m) * grown) +
                     law->spread_mps * age_s;
     out->along_m = fmax(out->across_m, puff->along_m);
-    out->temp_k = weather->air_temp_k + law->temp_rise_k * exp(-age_s / (law->cool_s * times));
+    const double warm = exp(-age_s / (law->cool_s * times));
+    out->temp_k = weather->air_temp_k + law->temp_rise_k * warm;
+    out->ground_share = law->ground_share * warm;
 
     /* the puff thins out towards its end, where density and slope reach zero, so it does not end abruptly */
     const double thin = (1 - lived * lived) * (1 - lived * lived);

@@ -51,13 +51,15 @@ enum {
 typedef struct EffectModel {
     double extinction_m2_kg[effect_band_count], albedo[effect_band_count];
     double asymmetry;
-    double mass_kg; /* mass of a puff; of emissions by entities, mass a second */
+    double asymmetry_ir; /* of the thermal bands, whose extinction and albedo here are without the forward peak */
+    double mass_kg;      /* mass of a puff; of emissions by entities, mass a second */
     double radius_start_m, radius_end_m, grow_s, spread_mps;
     double rise_mps, rise_s;
     double temp_rise_k, cool_s;
     double life_s;
     double time_power;
     double billow;
+    double ground_share;         /* of the difference of ground and air at birth, which fades with cool_s */
     double co2_share, h2o_share; /* shares of the mass that are hot gas, which emits and absorbs in the thermal bands */
 } EffectModel;
 
@@ -90,8 +92,8 @@ typedef struct EffectPuff {
 /* A spheroid whose density falls off as (1 - q^2)^2 from its centre to its surface (q = 1). */
 typedef struct EffectVolume {
     double p_enu[3], axis_enu[3];
-    double along_m, across_m; /* half axes, along the axis and across it */
-    double temp_k;
+    double along_m, across_m;                   /* half axes, along the axis and across it */
+    double temp_k, ground_share;                /* and so much of the difference of the ground below to the air */
     double extinction_per_m[effect_band_count]; /* extinction at the centre, without gas */
     double co2_kg_m3, h2o_kg_m3;                /* density of gases at the centre */
 } EffectVolume;

@@ -66,6 +66,7 @@ typedef struct Daylight {
     double  sky_w_m2[AIR_BAND_COUNT];       /* of the sky on a level plane; with tables: the integral of its radiance */
     double  ground_w_m2_sr[AIR_BAND_COUNT]; /* thermal bands: of ground seen from below, and of ground beyond the
                                              * terrain's edge. Others: 0, since it depends on the materials */
+    double ground_k;                        /* of level ground there; 0: not known */
     /* all wavelengths, for temperatures: direct facing the sun, diffuse, net thermal loss of a horizontal plane */
     double solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
     double zero_z_m;                   /* ENU z of the model's 0 km; heights bend with the Earth: daylight_height */

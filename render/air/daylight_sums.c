@@ -146,6 +146,7 @@ void daylight_sums(Daylight *out, const AirSource *source, const Weather *weathe
     if (out->droplets.layers > 0)
         droplets_under_clouds(&out->droplets, above > 0 ? out->sun_above / above : 1, out->cloud_sky);
     const double ground_k = source->ground_k > 0 ? source->ground_k : out->weather.air_temp_k;
+    out->ground_k = ground_k;
     out->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(out->planck_mwir, ground_k);
     out->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(out->planck_lwir, ground_k);
     thermal_of_drops(out, atmosphere, out->weather.air_temp_k);

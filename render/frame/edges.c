@@ -19,6 +19,8 @@ static const double about_px = 3; /* plants so near a target's box hide parts of
 static const double thin_px = 6;  /* a shadow of more rows than this is met by samples, and its edges are found */
 static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, with the sun at 45 degrees */
 static const double step_part = 0.05, step_ground = 0.5; /* of the range */
+static const double scenery_px_m =
+    0.5;                            /* wider pixels show houses as a texture: like plants', its borders are no edges */
 static const double kinds_bent = 1; /* of the change of range from pixel to pixel: real ground is not planar */
 
 static void mark_box(Job *job, const double box[4], RefineFlag flag)
@@ -214,11 +216,13 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
     const size_t   a = pixel_index(job, xa, ya), b = pixel_index(job, xb, yb);
     const bool     part = p->part[a] || p->part[b], plants = !part && p->instance && (p->instance[a] || p->instance[b]);
     const bool     entity = p->entity[a] || p->entity[b];
+    const double   near_m = fmin(p->range_m[a], p->range_m[b]), px_m = near_m / job->request->view.focal_px;
     const unsigned edge = entity ? refine_all
                           : part ? refine_scenery
                                  : refine_step; /* scenery is what targets stand before */
     const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
     if (sky_a && sky_b) return 0;
+    if (part && !entity && !sky_a && !sky_b && px_m > scenery_px_m) return 0;
     if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return edge;
     if (part && p->instance && p->instance[a] != p->instance[b]) return edge;
     if (sky_a != sky_b) return refine_step;
@@ -226,15 +230,12 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
     const bool   other = p->material[a] != p->material[b];
     const double cosine =
         p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] + p->normal[2][a] * p->normal[2][b];
-    const double    near_m = fmin(p->range_m[a], p->range_m[b]);
     const bool      kinds = other && !part; /* a crest between two ground classes is worth refining when it is low */
-    const double    step_m = part    ? step_part * near_m
-                             : kinds ? near_m / job->request->view.focal_px
-                                     : step_ground * near_m;
+    const double    step_m = part ? step_part * near_m : kinds ? px_m : step_ground * near_m;
     const PixelPair pair = {a, b, xa, ya, xb, yb};
     if (!(cosine > sharp_cosine) || steps_in_depth(job, &pair, step_m, kinds ? kinds_bent : 0, kinds)) return edge;
     if (part && other) return edge;
-    return (other ? refine_ground : 0) | (job->sun[a] != job->sun[b] ? refine_sun : 0);
+    return (other ? refine_ground : 0) | ((job->sun[a] > 0) != (job->sun[b] > 0) ? refine_sun : 0);
 }
 
 /* What a pair of neighbours is, in find_pairs: it may be an edge; they are clearly alike; some plant is in it, and it
@@ -254,7 +255,7 @@ static void find_pairs(uint32_t *restrict pair, const Job *job, size_t a, size_t
         const size_t   k = a + (size_t)i, l = b + (size_t)i;
         const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]);
         const uint32_t else_other =
-            (material[k] ^ material[l]) | (plant[k] ^ plant[l]) | (uint32_t)(job->sun[k] != job->sun[l]);
+            (material[k] ^ material[l]) | (plant[k] ^ plant[l]) | (uint32_t)((job->sun[k] > 0) != (job->sun[l] > 0));
         const float    turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
         const float    near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
         const float    far_m = range_m[k] < range_m[l] ? range_m[l] : range_m[k];

@@ -26,6 +26,17 @@ static Status open_plants(ShadeScene *scene, Visibility *visibility, const Rende
     return scene->bare && scene->full ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
+static void open_sky_of_scenery(ShadeScene *scene)
+{
+    double level_w_m2[AIR_BAND_COUNT];
+    if (!scene->world->horizons) return;
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        level_w_m2[b] = b >= AIR_MWIR ? scene->air->light.ground_w_m2_sr[b] * pi_rad
+                                      : optical_ground_w_m2(b, scene->air, &scene->world->materials);
+    sky_horizon_light(&scene->horizon_light, scene->world->horizons, scene->air, level_w_m2);
+    scene->horizons = scene->world->horizons;
+}
+
 Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsigned channels, Pool *pool, Arena *arena)
 {
     const World    *world = scene->world;
@@ -65,6 +76,7 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
     scene->visibility = posed;
     status = world_need_patches(world, snapshot);
     if (status != STATUS_OK) return status;
+    if (request->sky_visibility && request->sky_samples == 0) open_sky_of_scenery(scene);
     status = open_plants(scene, posed, request, pool, arena);
     if (status != STATUS_OK) return status;
     status = far_woods_frame(&scene->far, world->far_woods, air, &world->materials, arena);
@@ -121,6 +133,8 @@ void shade_samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
         visibility_shadow(dark, scene->visibility, &s->hits, scene->air->light.sun_d_enu, &shader->counters);
     if (raised) memcpy(s->hits.p_enu[2], z_m, (size_t)s->hits.count * sizeof *z_m);
     for (int i = 0; i < s->hits.count; i++) s->sun[i] = dark[i] ? 0 : 1;
+    if (leaves > 0 || light)
+        smoke_shadow(s->sun, scene->effects.volume, scene->effects.count, &s->hits, scene->air->light.sun_d_enu);
     shader->shadow_s += wall_clock_s() - t0;
 }
 
@@ -384,6 +398,19 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
         if (out[b]) smoke_apply(out[b], &s->smoke, b, s->hits.count);
 }
 
+/* What buildings leave of the sky, beside what entities do. */
+static void open_horizons(Shader *shader, const ShadeScene *scene, const Samples *s)
+{
+    SkyOpen *open = &shader->open;
+    if (!scene->horizons || !s->channels) return;
+    for (int b = 0; b < AIR_BAND_COUNT && !shader->any_open; b++)
+        if (s->channels >> b & 1)
+            for (int i = 0; i < s->hits.count; i++) open->factor[b][i] = 1;
+    if (!shader->any_open) open->any_below = false;
+    shader->any_open = true;
+    sky_horizon_open(open->factor, scene->horizons, &scene->horizon_light, s->channels, &s->hits);
+}
+
 static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     radar_shade(&s->returns, &scene->world->radar,
@@ -414,6 +441,7 @@ void shade_samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
                          &shader->counters);
     shader->any_open = scene->sky && s->channels &&
                        sky_visibility_open(&shader->open, scene->sky, shader->sky, &s->hits, &shader->counters);
+    open_horizons(shader, scene, s);
     shader->any_canopy = scene->world->canopy && scene->sky_samples == 0 && s->channels &&
                          canopy_light(&shader->canopy, scene->world->canopy, scene->world->landscape,
                                       &scene->air->light, scene->world->materials.ground_rho, &s->hits, s->channels);

@@ -16,20 +16,22 @@
 
 /* The scene of a frame, shared by its threads. */
 typedef struct ShadeScene {
-    const World      *world;
-    const Snapshot   *snapshot;
-    const Air        *air;
-    const Visibility *visibility;
-    const Visibility *bare;    /* the same without plants */
-    const Visibility *full;    /* the same with every plant at its full detail */
-    ForestFrame       plants;  /* where visibility has some */
-    EffectScene       effects; /* smoke, dust, flames and bursts */
-    SurfaceLight      surface_light;
-    FarWoodsFrame    *far;           /* NULL: no woods were left out */
-    SkyVisibility    *sky;           /* NULL: sky and ground irradiance follow from the surface tilt alone */
-    int               sky_samples;   /* directions of hemisphere sampling a hit; 0: the quick form */
-    const int        *all_volumes;   /* 0, 1, 2 ...: all of the effects */
-    int               hidden_entity; /* snapshot index of the entity whose parts these rays do not meet; -1: none */
+    const World       *world;
+    const Snapshot    *snapshot;
+    const Air         *air;
+    const Visibility  *visibility;
+    const Visibility  *bare;    /* the same without plants */
+    const Visibility  *full;    /* the same with every plant at its full detail */
+    ForestFrame        plants;  /* where visibility has some */
+    EffectScene        effects; /* smoke, dust, flames and bursts */
+    SurfaceLight       surface_light;
+    FarWoodsFrame     *far;           /* NULL: no woods were left out */
+    const SkyHorizons *horizons;      /* NULL: buildings hide no sky */
+    SkyHorizonLight    horizon_light; /* with horizons */
+    SkyVisibility     *sky;           /* NULL: sky and ground irradiance follow from the surface tilt alone */
+    int                sky_samples;   /* directions of hemisphere sampling a hit; 0: the quick form */
+    const int         *all_volumes;   /* 0, 1, 2 ...: all of the effects */
+    int                hidden_entity; /* snapshot index of the entity whose parts these rays do not meet; -1: none */
 } ShadeScene;
 
 /* Poses the snapshot and prepares its plants, light and smoke, seen from the eye of this view. scene: world, snapshot

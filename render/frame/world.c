@@ -129,6 +129,7 @@ void world_cool(World *world)
 void world_close(World *world)
 {
     world_cool(world);
+    sky_horizons_destroy(world->horizons);
     scenery_tracer_destroy(world->scenery);
     forest_destroy(world->forest);
     canopy_destroy(world->canopy);

@@ -71,6 +71,8 @@ Status world_scenery(World *world, const Scenery *scenery, const char *isa, Pool
     Status status = scenery_tracer_create(&tracer, scenery, isa, pool);
     if (status != STATUS_OK) return status;
     status = scenery_tracer_materials(tracer, &world->materials, path);
+    if (status == STATUS_OK && world->landscape)
+        status = sky_horizons_create(&world->horizons, tracer, &world->landscape->elevation, &world->materials, pool);
     if (status == STATUS_OK) world->scenery = tracer;
     else scenery_tracer_destroy(tracer);
     return status;

@@ -11,10 +11,10 @@
 
 static const TableColumn layer_columns[] = {
     {"name", .type = TABLE_NAME, LAYER(name)},
-    {"w_mk", TABLE_DOUBLE, LAYER(conductivity_w_mk), .low = 0, .high = 500},
+    {"w_mk", TABLE_DOUBLE, LAYER(conductivity_w_mk), .low = 1e-3, .high = 500, .absent = TABLE_EMPTY},
     {"kg_m3", TABLE_DOUBLE, LAYER(density_kg_m3), .low = 0.5, .high = 20000},
     {"j_kgk", TABLE_DOUBLE, LAYER(heat_capacity_j_kgk), .low = 100, .high = 5000},
-    {"m2k_w", TABLE_DOUBLE, LAYER(resistance_m2k_w), .low = 0, .high = 10},
+    {"m2k_w", TABLE_DOUBLE, LAYER(resistance_m2k_w), .low = 1e-3, .high = 10, .absent = TABLE_EMPTY},
 };
 static const TableFormat layer_format = {"constructions",
                                          layer_columns,
@@ -36,7 +36,7 @@ static Status take_layer(void *user, const void *read, const TableRows *rows, in
         if (strcmp(to->row[k].name, m->name) == 0)
             return table_rows_refuse(rows, number, "name", "another name than those of the rows above");
     if ((m->conductivity_w_mk > 0) == (m->resistance_m2k_w > 0))
-        return table_rows_refuse(rows, number, NULL, "either w_mk or m2k_w must be more than 0");
+        return table_rows_refuse(rows, number, NULL, "one of w_mk and m2k_w must be given");
     to->row[to->count++] = *m;
     return STATUS_OK;
 }
@@ -81,10 +81,10 @@ static const TableColumn columns[] = {
     {"material", TABLE_OWN, KIND(material), .absent = TABLE_EMPTY, .parse = parse_material},
     {"layers", TABLE_OWN, TABLE_AT(Row, layers), .parse = parse_layers},
     {"inside", TABLE_CHOICE, KIND(inside), .choices = inside_words},
-    {"inside_w_m2k", TABLE_DOUBLE, KIND(inside_w_m2k), .low = 0, .high = 100},
+    {"inside_w_m2k", TABLE_DOUBLE, KIND(inside_w_m2k), .low = 0.1, .high = 100, .absent = TABLE_EMPTY},
     {"day_c", TABLE_DOUBLE, TABLE_AT(Row, day_c), .low = -50, .high = 500, .absent = TABLE_EMPTY, .otherwise = 0},
     {"night_c", TABLE_DOUBLE, TABLE_AT(Row, night_c), .low = -50, .high = 500, .absent = TABLE_EMPTY, .otherwise = 0},
-    {"room_kj_m2k", TABLE_DOUBLE, KIND(room_j_m2k), .low = 0, .high = 1e4, .unit = 1e3, .absent = TABLE_EMPTY},
+    {"room_kj_m2k", TABLE_DOUBLE, KIND(room_j_m2k), .low = 0.1, .high = 1e4, .unit = 1e3, .absent = TABLE_EMPTY},
     {"room_w_m2k", TABLE_DOUBLE, KIND(room_w_m2k), .low = 0, .high = 100, .absent = TABLE_EMPTY},
     {"rough", TABLE_DOUBLE, KIND(rough), .low = 1, .high = 2.5},
     {"absorptance", TABLE_DOUBLE, KIND(absorptance), .low = 0, .high = 1, .absent = TABLE_EMPTY, .otherwise = NAN},
@@ -140,9 +140,9 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
         return table_rows_refuse(rows, number, "layers", "thinner: they have more than 96 elements");
     const bool room = c->inside == BEHIND_HEATED || c->inside == BEHIND_UNHEATED || c->inside == BEHIND_FLUE;
     if (room != (c->inside_w_m2k > 0))
-        return table_rows_refuse(rows, number, "inside_w_m2k", "more than 0 of a room or flue, and else 0");
+        return table_rows_refuse(rows, number, "inside_w_m2k", "given of a room or flue, and else empty");
     if (c->inside == BEHIND_UNHEATED && !(c->room_j_m2k > 0))
-        return table_rows_refuse(rows, number, "room_kj_m2k", "more than 0 of an unheated room");
+        return table_rows_refuse(rows, number, "room_kj_m2k", "given of an unheated room");
     if ((c->inside == BEHIND_HEATED || c->inside == BEHIND_FLUE) &&
         !(*table_rows_text(rows, number, "day_c") && *table_rows_text(rows, number, "night_c")))
         return table_rows_refuse(rows, number, "day_c", "the temperature of a heated room or flue, and night_c too");

@@ -97,7 +97,7 @@ typedef struct HeatPast {
     double unix_s[heat_past], span_s[heat_past]; /* middle of each interval, and its length */
     double sun_d_enu[heat_past][3];
     float  watt_k[ground_kinds][heat_past], sun_k[ground_kinds][heat_past], sky_k[ground_kinds][heat_past];
-    float  effusivity[ground_kinds]; /* of what lies on top, J/(m2 K s^1/2) */
+    float  effusivity[ground_kinds];  /* of what lies on top, J/(m2 K s^1/2) */
     float  diffusivity[ground_kinds]; /* likewise, m2/s */
 } HeatPast;
 
@@ -223,13 +223,13 @@ double heat_shadow_cell_m(const ShadowMap *map);
  * A stand hid the sun along its box's shadow, and sky, while it stood (stand_heat_private.h): each past interval of
  * HeatPast that it overlaps gives kelvins by the kind's response, scaled as the shade of heat.h is: sun hidden all day,
  * or all of the sky hidden, are the columns that see none. Shadows lie where the sun put them, by the age of each up to
- * the frame's time, and are soft by the sun's path and by conduction sideways. A track was rubbed warm once, by a pulse of heat that the same response lets fade, and
- * lies loosened: some of the way to ploughed ground, for good. A burst burnt its ground but for the crater, which is
- * loose soil, and left heat. The exhaust of what stands warms the ground that it reaches (vehicle_load_private.h, in
- * still air: what reaches the ground does so within metres of the outlet, before a wind bends it): a flux by the film
- * of its speed (vehicle_heat.h) that falls as the ground warms, through the kind's response; ground that the sun has
- * made warmer than the gas is not cooled, and the gas' radiation is left out. Estimates: the loosened share (0.6 of
- * tracks, 0.3 of wheels), the burnt edge. */
+ * the frame's time, and are soft by the sun's path and by conduction sideways. A track was rubbed warm once, by a pulse
+ * of heat that the same response lets fade, and lies loosened: some of the way to ploughed ground, for good. A burst
+ * burnt its ground but for the crater, which is loose soil, and left heat. The exhaust of what stands warms the ground
+ * that it reaches (vehicle_load_private.h, in still air: what reaches the ground does so within metres of the outlet,
+ * before a wind bends it): a flux by the film of its speed (vehicle_heat.h) that falls as the ground warms, through the
+ * kind's response; ground that the sun has made warmer than the gas is not cooled, and the gas' radiation is left out.
+ * Estimates: the loosened share (0.6 of tracks, 0.3 of wheels), the burnt edge. */
 
 typedef struct MarkHeat MarkHeat;
 

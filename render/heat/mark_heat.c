@@ -111,8 +111,7 @@ static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exer
     out->jet = path;
     out->blow_from_s = exercise_s + b->from_s, out->blow_to_s = exercise_s + b->to_s;
     for (int k = 0; k < 2; k++)
-        out->reach_m =
-            fmax(out->reach_m, fmax(path->box.high_m[k] - p_enu[k], p_enu[k] - path->box.low_m[k]));
+        out->reach_m = fmax(out->reach_m, fmax(path->box.high_m[k] - p_enu[k], p_enu[k] - path->box.low_m[k]));
     return STATUS_OK;
 }
 

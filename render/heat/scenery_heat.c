@@ -195,7 +195,6 @@ static Status blend_walls(SceneryTemps *t, const SceneryHeat *h, double unix_s, 
     for (size_t i = 0; i < faces; i++) face_k[i] = a->face_k[i] + (float)share * (b->face_k[i] - a->face_k[i]);
     t->face_k = face_k, t->share = share;
     t->air_k = a->air_k + share * (b->air_k - a->air_k);
-    if (!h->config.shadow) return STATUS_OK;
     t->sun_k = arena_alloc(arena, (size_t)w->count + 1, sizeof *t->sun_k);
     if (!t->sun_k) return STATUS_NO_MEMORY;
     for (int i = 0; i < w->count; i++)
@@ -226,26 +225,6 @@ Status scenery_temps_at(SceneryTemps **out, SceneryHeat *h, double unix_s, Arena
     return STATUS_OK;
 }
 
-/* Share of the past direct sun that relief and plants took there. */
-static double taken_at(const SceneryTemps *t, int wall, const SceneryObject *o, const double p_body[3],
-                       const double n_enu[3])
-{
-    const SceneryHeat  *h = t->heat;
-    const SceneryWalls *w = &h->walls;
-    uint8_t             shadow[shadow_most_slots];
-    double              open, p_enu[3], all = 0, lost = 0;
-    m3_mul_v3(p_enu, o->r_enu_from_body, p_body);
-    v3_add(p_enu, p_enu, o->p_enu);
-    heat_shadow_at(shadow, &open, h->config.shadow, p_enu[0], p_enu[1]);
-    for (int s = 0; s < w->slots; s++) {
-        const double along = (double)w->slot_d_enu[0][s] * n_enu[0] + (double)w->slot_d_enu[1][s] * n_enu[1] +
-                             (double)w->slot_d_enu[2][s] * n_enu[2];
-        const double k = fmax(along, 0) * (double)t->sun_k[wall][s];
-        all += k, lost += k * shadow[s];
-    }
-    return all > 1e-3 ? clamp(lost / (255 * all), 0, 1) : 0;
-}
-
 /* Between the four nodes about a normal: bilinear, but in two triangles where the hemisphere is folded between them
  * (n_east or n_north changes sign), along the fold, for what faces one of the four winds lies on it. */
 static double blend(const float *at, int cell, int facets, const double s[2])
@@ -259,8 +238,24 @@ static double blend(const float *at, int cell, int facets, const double s[2])
     return low + s[1] * (high - low);
 }
 
-/* In the sun; shade_k: in its shade. */
-static double facets_k(double *shade_k, const SceneryTemps *t, int wall, const double n_enu[3])
+/* Kelvins that the sun of the day past has left on a normal, by the wall's memory; and the share of them that shade
+ * took (of 255 of each slot; NULL: none). */
+static double sun_of_day(double *taken, const SceneryTemps *t, int wall, const double n_enu[3], const uint8_t *shadow)
+{
+    const SceneryWalls *w = &t->heat->walls;
+    double              all = 0, lost = 0;
+    for (int s = 0; s < w->slots; s++) {
+        const double k = scenery_walls_cosine(w, wall, s, n_enu) * (double)t->sun_k[wall][s];
+        all += k, lost += shadow ? k * shadow[s] : 0;
+    }
+    *taken = all > 1e-3 ? clamp(lost / (255 * all), 0, 1) : 0;
+    return all;
+}
+
+/* In the sun, and in its shade, where it leaves all but sun_k of this normal to the facets: that has a kink where it
+ * grazes. */
+static void facets_k(double *lit_k, double *shade_k, const SceneryTemps *t, int wall, const double n_enu[3],
+                     double sun_k)
 {
     const SceneryWalls *w = &t->heat->walls;
     const int           facets = t->heat->config.heat.facets;
@@ -271,7 +266,7 @@ static double facets_k(double *shade_k, const SceneryTemps *t, int wall, const d
     const int           node = (int)fmin(up, heat_ups - 2);
     const float        *shade = k + facets * facets + node;
     *shade_k = (double)shade[0] + (up - node) * (double)(shade[1] - shade[0]);
-    return blend(k + cell, cell, facets, share);
+    *lit_k = n_enu[2] > -0.999 ? blend(k + cell, cell, facets, share) + sun_k : *shade_k;
 }
 
 void scenery_wall_seen(WallSeen *out, const SceneryTemps *t, const double n_enu[3], double taken)
@@ -279,13 +274,13 @@ void scenery_wall_seen(WallSeen *out, const SceneryTemps *t, const double n_enu[
     const SceneryHeat  *h = t->heat;
     const SceneryWalls *w = &h->walls;
     const WallsTable   *a = &w->table[0], *b = &w->table[1];
-    double              shade_k, ground_k = 0;
+    double              sun_k, shade_k, none, ground_k = 0;
     GroundWeather       weather;
     WallFlux            flux;
     h->config.heat.weather(&weather, t->unix_s, h->config.heat.user);
     for (int k = about_grass; k <= about_paved; k++)
         ground_k += 0.5 * (a->about_k[k] + t->share * (b->about_k[k] - a->about_k[k]));
-    const double    sun_k = facets_k(&shade_k, t, 0, n_enu);
+    facets_k(&sun_k, &shade_k, t, 0, n_enu, sun_of_day(&none, t, 0, n_enu, NULL));
     const WallFace  face = {{n_enu[0], n_enu[1], n_enu[2]}, 1 - taken};
     const WallPlace place = {&weather, ground_k, w->ground_rho};
     wall_flux(&flux, &w->wall[0].kind, &place, &face);
@@ -301,12 +296,33 @@ void scenery_wall_seen(WallSeen *out, const SceneryTemps *t, const double n_enu[
                       .film_w_m2k = wall_film_w_m2k(&flux, temp_k, n_enu[2])};
 }
 
+/* With all of the sun of the day past, and with none of it; returns the share of it that was taken. Before a wall the
+ * map is asked a cell out of it, for its own cell may be as high as its roof. */
+static double wall_in_sun(double *lit_k, double *shade_k, const SceneryTemps *t, int wall, const SceneryObject *o,
+                          const double p_body[3], const double n_enu[3])
+{
+    static const double roof_up = 0.5;
+    const SceneryHeat  *h = t->heat;
+    uint8_t             shadow[shadow_most_slots];
+    double              taken, open;
+    if (h->config.shadow) {
+        double p_enu[3];
+        m3_mul_v3(p_enu, o->r_enu_from_body, p_body);
+        v3_add(p_enu, p_enu, o->p_enu);
+        v3_add_scaled(p_enu, p_enu, n_enu[2] < roof_up ? heat_shadow_cell_m(h->config.shadow) : 0, n_enu);
+        heat_shadow_at(shadow, &open, h->config.shadow, p_enu[0], p_enu[1]);
+    }
+    const double sun_k = sun_of_day(&taken, t, wall, n_enu, h->config.shadow ? shadow : NULL);
+    facets_k(lit_k, shade_k, t, wall, n_enu, sun_k);
+    return taken;
+}
+
 static double wall_k(const SceneryTemps *t, int wall, const SceneryObject *o, const double p_body[3],
                      const double n_enu[3])
 {
-    double       shade_k;
-    const double sun_k = facets_k(&shade_k, t, wall, n_enu);
-    return t->sun_k ? sun_k + taken_at(t, wall, o, p_body, n_enu) * (shade_k - sun_k) : sun_k;
+    double       lit_k, shade_k;
+    const double taken = wall_in_sun(&lit_k, &shade_k, t, wall, o, p_body, n_enu);
+    return lit_k + taken * (shade_k - lit_k);
 }
 
 /* A place of clutter in the axes of its part's node, and the patches there; NULL: none are known. */
@@ -371,8 +387,7 @@ void scenery_heat_of(SceneryHeatOf *out, const SceneryTemps *t, int object, int 
         const SceneryWalls *w = &h->walls;
         const double        a_k = w->table[0].behind_k[wall], b_k = w->table[1].behind_k[wall];
         out->of = &w->wall[wall].kind.of;
-        out->sun_k = facets_k(&out->shade_k, t, wall, n_enu);
-        out->taken = t->sun_k ? taken_at(t, wall, o, p_body, n_enu) : 0;
+        out->taken = wall_in_sun(&out->sun_k, &out->shade_k, t, wall, o, p_body, n_enu);
         out->behind_k = a_k + t->share * (b_k - a_k);
         return;
     }

@@ -16,6 +16,7 @@ typedef struct SceneryWall {
     WallKind      kind;
     ColumnFactors factors[2][heat_halvings]; /* of step_s and of half hours, and of their halves */
     bool         *used;                      /* [columns]: some part faces there; others are not stepped */
+    int          *nearest;                   /* [columns]: a used column, itself if it is used */
     size_t        first;                     /* of its temperatures in WallsState.temp_k: face by face that is used */
     float         memory[heat_day_slots];    /* K now for 1 W/m2 over a half hour so many half hours ago */
 } SceneryWall;
@@ -35,7 +36,7 @@ typedef struct WallsState {
 /* At a time of the grid, or between two. */
 typedef struct WallsTable {
     double air_k, about_k[about_columns], behind_k[scenery_most_walls];
-    float *face_k;                                    /* [walls * columns] */
+    float *face_k; /* [walls * columns]; of facets less sun_k times the cosines of their normal */
     float  sun_k[scenery_most_walls][heat_day_slots]; /* K now for the direct sun of a slot, per unit cosine */
 } WallsTable;
 
@@ -63,6 +64,13 @@ Status scenery_walls_open(SceneryWalls *walls, const Materials *materials);
 void   scenery_walls_close(SceneryWalls *walls); /* accepts zeroes */
 /* Until the table holds unix_s, which may be before the last. */
 void scenery_walls_advance(SceneryWalls *walls, double unix_s);
+/* Of the sun of a slot on a wall's normal; both sides' of what has two. */
+static inline double scenery_walls_cosine(const SceneryWalls *w, int wall, int slot, const double n_enu[3])
+{
+    const double along = (double)w->slot_d_enu[0][slot] * n_enu[0] + (double)w->slot_d_enu[1][slot] * n_enu[1] +
+                         (double)w->slot_d_enu[2][slot] * n_enu[2];
+    return w->wall[wall].kind.of.inside == BEHIND_BACK ? fabs(along) : fmax(along, 0);
+}
 /* Works ahead at the next step: what a frame pays. */
 void scenery_walls_ahead(SceneryWalls *walls);
 /* At a time that the table holds. */
@@ -116,7 +124,7 @@ struct SceneryHeat {
 struct SceneryTemps {
     const SceneryHeat *heat;
     double             unix_s, share, air_k; /* share: between the walls' tables */
-    const float       *face_k;               /* [walls * columns] */
+    const float       *face_k;               /* [walls * columns]: as WallsTable's */
     float             *patch_k;
     int               *first;       /* [states] of patch_k */
     double (*r_enu_from_body)[9];   /* [movers] */

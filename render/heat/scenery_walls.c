@@ -160,46 +160,53 @@ void scenery_walls_ahead(SceneryWalls *w) { work_ahead(w, 2); }
 
 /* ---- tables ------------------------------------------------------------------------------------ */
 
-/* Columns that no part faces are as warm as the one nearest to them. */
-static void fill_unused(const SceneryWalls *w, const SceneryWall *wall, float *face_k)
+/* Facets that no part faces stand for the used one nearest to them. */
+static void find_nearest(const SceneryWalls *w, SceneryWall *wall)
 {
     const int all = w->config->heat.facets * w->config->heat.facets;
-    for (int c = 0; c < all; c++) {
+    for (int c = 0; c < w->columns; c++) {
         double nearest = -2;
+        wall->nearest[c] = c;
         if (wall->used[c]) continue;
         const WallFace want = face_of(w, c);
         for (int k = 0; k < all; k++) {
+            if (!wall->used[k]) continue;
             const WallFace is = face_of(w, k);
             const double   along = v3_dot(want.n_enu, is.n_enu);
-            if (wall->used[k] && along > nearest) nearest = along, face_k[c] = face_k[k];
+            if (along > nearest) nearest = along, wall->nearest[c] = k;
         }
     }
 }
 
+static void fill_wall(const SceneryWalls *w, WallsTable *out, int i)
+{
+    const SceneryWall *wall = &w->wall[i];
+    const double       now_s = (double)w->now.index * w->config->heat.step_s;
+    const double      *temp_k = w->now.temp_k + wall->first;
+    float             *face_k = out->face_k + (size_t)i * (size_t)w->columns, *sun_k = out->sun_k[i];
+    out->behind_k[i] = wall_behind_k(&wall->kind.of, solar_hour(w, now_s), w->now.day_k, out->air_k, w->now.room_k[i]);
+    memset(sun_k, 0, sizeof out->sun_k[i]);
+    for (int age = 0; age < heat_day_slots; age++) {
+        const int half = half_hour_of(now_s - age * slot_s), slot = w->slot_of[half];
+        if (slot >= 0) sun_k[slot] += wall->memory[age] * (float)wall->kind.absorptance * w->now.direct_w_m2[half];
+    }
+    for (int c = 0; c < w->columns; c++) {
+        if (!wall->used[c]) continue;
+        const WallFace face = face_of(w, c);
+        double         sun = 0;
+        for (int s = 0; s < w->slots && face.sun > 0; s++)
+            sun += (double)sun_k[s] * scenery_walls_cosine(w, i, s, face.n_enu);
+        face_k[c] = (float)(temp_k[0] - sun);
+        temp_k += wall->kind.column.nodes;
+    }
+    for (int c = 0; c < w->columns; c++) face_k[c] = face_k[wall->nearest[c]];
+}
+
 static void fill_table(SceneryWalls *w, WallsTable *out)
 {
-    const double now_s = (double)w->now.index * w->config->heat.step_s;
     out->air_k = w->weather[0].air.temp_k;
     for (int k = 0; k < about_columns; k++) out->about_k[k] = w->now.about[k].state.temp_k[0];
-    memset(out->sun_k, 0, sizeof out->sun_k);
-    for (int i = 0; i < w->count; i++) {
-        const SceneryWall *wall = &w->wall[i];
-        const size_t       first = (size_t)i * (size_t)w->columns;
-        out->behind_k[i] =
-            wall_behind_k(&wall->kind.of, solar_hour(w, now_s), w->now.day_k, out->air_k, w->now.room_k[i]);
-        const double *temp_k = w->now.temp_k + wall->first;
-        for (int c = 0; c < w->columns; c++) {
-            if (!wall->used[c]) continue;
-            out->face_k[first + (size_t)c] = (float)temp_k[0];
-            temp_k += wall->kind.column.nodes;
-        }
-        fill_unused(w, wall, out->face_k + first);
-        for (int age = 0; age < heat_day_slots; age++) {
-            const int half = half_hour_of(now_s - age * slot_s), slot = w->slot_of[half];
-            if (slot >= 0)
-                out->sun_k[i][slot] += wall->memory[age] * (float)wall->kind.absorptance * w->now.direct_w_m2[half];
-        }
-    }
+    for (int i = 0; i < w->count; i++) fill_wall(w, out, i);
 }
 
 static void next_table(SceneryWalls *w)
@@ -353,6 +360,9 @@ static Status open_walls(SceneryWalls *w, const Materials *materials)
         for (int k = 0; k < room_faces; k++) wall->used[room[k]] = true;
         for (int k = c->facets * c->facets; k < w->columns; k++) wall->used[k] = true;
         find_memory(wall);
+        wall->nearest = malloc((size_t)w->columns * sizeof *wall->nearest);
+        if (!wall->nearest) return STATUS_NO_MEMORY;
+        find_nearest(w, wall);
         wall->first = w->temps;
         for (int k = 0; k < w->columns; k++) w->temps += wall->used[k] ? (size_t)wall->kind.column.nodes : 0;
     }
@@ -443,7 +453,7 @@ Status scenery_walls_open(SceneryWalls *w, const Materials *materials)
 
 void scenery_walls_close(SceneryWalls *w)
 {
-    for (int i = 0; w->wall && i < w->count; i++) free(w->wall[i].used);
+    for (int i = 0; w->wall && i < w->count; i++) free(w->wall[i].used), free(w->wall[i].nearest);
     for (int k = 0; k < 2; k++) free(w->table[k].face_k);
     free(w->wall), free(w->now.temp_k), free(w->begun.temp_k), free(w->course.at);
     *w = (SceneryWalls){0};

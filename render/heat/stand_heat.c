@@ -1,4 +1,5 @@
-/* render/heat/stand_heat.c: shadows of standing boxes in the ground's heat, soft by the sun's path and by conduction. */
+/* render/heat/stand_heat.c: shadows of standing boxes in the ground's heat, soft by the sun's path and by conduction.
+ */
 #include "render/heat/stand_heat_private.h"
 
 static const double sun_radius_rad = 0.00465; /* of its disc; the deviation of an even disc is half of that */
@@ -43,8 +44,7 @@ static double covered(const Shadow *from, const Shadow *to, const double d_enu[3
     const double        disc_m = 0.5 * sun_radius_rad * to->away_m / d_enu[2];
     double              x_m[2], moved_m[2], share = 1;
     if (from->behind || to->behind) return 0;
-    for (int k = 0; k < 2; k++)
-        x_m[k] = 0.5 * (from->x_m[k] + to->x_m[k]), moved_m[k] = to->x_m[k] - from->x_m[k];
+    for (int k = 0; k < 2; k++) x_m[k] = 0.5 * (from->x_m[k] + to->x_m[k]), moved_m[k] = to->x_m[k] - from->x_m[k];
     for (int a = 0; a < 3 && share > 0; a++) {
         double       half[3][2];
         const double length_m = hypot(to->half_m[a][0], to->half_m[a][1]);
@@ -105,8 +105,7 @@ static double taken_along(const StandBox *s, const HeatPast *p, int i, double un
             const double middle_s = i ? age_s - 0.5 * (old_s - young_s) / parts
                                       : pow(sqrt(young_s) + (u - 0.5 / parts) * (sqrt(old_s) - sqrt(young_s)), 2);
             const double cosine = 0.5 * (fmax(v3_dot(d, n_enu), 0) + fmax(v3_dot(last_d, n_enu), 0));
-            if (cosine > 0)
-                sum += cosine * covered(&last, &here, d, sqrt(2 * diffusivity_m2_s * fmax(middle_s, 0)));
+            if (cosine > 0) sum += cosine * covered(&last, &here, d, sqrt(2 * diffusivity_m2_s * fmax(middle_s, 0)));
         }
         last = here, any = up;
         memcpy(last_d, d, sizeof last_d);
@@ -201,7 +200,8 @@ double stand_hidden_share(const StandBox *s, const double p_enu[3], double soft_
         const double in_m = fmin(q[a] - s->low_m[a], s->high_m[a] - q[a]);
         if (in_m < inside_m) inside_m = in_m, nearest = a;
     }
-    if (!(q[2] >= s->low_m[2] && q[2] <= s->high_m[2])) return seen_share(s, q, up); /* over or under its whole height */
+    if (!(q[2] >= s->low_m[2] && q[2] <= s->high_m[2]))
+        return seen_share(s, q, up); /* over or under its whole height */
     const double under = below(inside_m / soft_m);
     if (inside_m > -edge_m) /* on the outline, or within it: as from just outside of the nearest side */
         q[nearest] = q[nearest] - s->low_m[nearest] < s->high_m[nearest] - q[nearest] ? s->low_m[nearest] - edge_m

@@ -1,8 +1,10 @@
 /* render/heat/wall_column_private.h: a wall or roof of one construction under the weather: its balance outside, what is
  * behind it, its steps.
  *
- *     outer face   a (sun cos + F_sky diffuse + F_ground rho_ground global) + e (F_sky (b L + (1 - b) s Ta^4) +
- * F_ground s Tground^4) - e s T^4 - h (T - Ta) inner face   inside_w_m2k (T - Troom)
+ *     outer face   a light + e longwave - e s T^4 - h (T - Ta)
+ *     light        direct cos + F_sky diffuse + F_ground rho_ground global
+ *     longwave     F_sky (b L + (1 - b) s Ta^4) + F_ground s Tground^4
+ *     inner face   inside_w_m2k (T - Troom)
  *
  * F_sky = (1 + n_up) / 2, F_ground = 1 - F_sky. The low sky is as warm as the air: b = sqrt F_sky (Walton 1983). Film:
  * natural flow over a plate of any tilt with that of the wind over glass (MoWiTT, the mean of its windward and leeward

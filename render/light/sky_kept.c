@@ -359,7 +359,7 @@ void sky_met_load(Hits *hits, Rays *rays, int i, const SkyMet *met)
     hits->model[i] = met->model;
     hits->inside[i] = met->inside;
     hits->surface[i] = met->surface;
-    hits->instance[i] = 0;
+    hits->instance[i] = met->instance;
 }
 
 void sky_notes_begin(SkyNotes *notes, int points)
@@ -383,6 +383,7 @@ void sky_notes_met(SkyNotes *notes, int point, int sample, int bounce, const Hit
     note->point = point;
     note->met = (SkyMet){.facet = hits->facet[i],
                          .entity = hits->entity[i],
+                         .instance = hits->instance[i],
                          .material = hits->material[i],
                          .part = hits->part[i],
                          .model = hits->model[i],

@@ -3,6 +3,7 @@
 #include "render/light/sky_visibility_private.h"
 
 #include "render/light/optical.h"
+#include "render/trace/scenery/scenery_tracer.h"
 #include "pitviper_simd.h"
 
 enum {
@@ -61,10 +62,11 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         v->level_w_m2[b] = b >= AIR_MWIR ? scene->gather.air->light.ground_w_m2_sr[b] * pi_rad
                                          : optical_ground_w_m2(b, scene->gather.air, scene->gather.materials);
-    Status status = sky_entities_tasks(v, arena);
+    const SceneryFrame *scenery = scenery_frame_in(scene->gather.visibility);
+    Status              status = sky_entities_tasks(v, arena);
     if (status == STATUS_OK && skips(scene->skips_off, SKIP_KEPT))
         status = sky_kept_begin(&v->keeper, scene->kept, scene->gather.visibility,
-                                (uint64_t)(uintptr_t)scene->landscape, arena);
+                                (uint64_t)(uintptr_t)scene->landscape ^ scenery_frame_hash(scenery), arena);
     if (status == STATUS_OK) *out = v;
     return status;
 }

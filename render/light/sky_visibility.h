@@ -50,7 +50,7 @@ uint64_t sky_kept_end(SkyKeptFrame *frame);
 typedef struct SkyMet {
     double   p_enu[3], d_enu[3];
     float    n_geo[3], n_enu[3];
-    uint32_t facet, entity;
+    uint32_t facet, entity, instance;
     uint16_t material, part, model;
     uint8_t  kind, inside, surface;
     uint8_t  sample, bounce;

@@ -107,6 +107,7 @@ typedef struct SmokeVolume {
     double source[smoke_bands], from_top[smoke_bands], sun[smoke_bands][smoke_scatter_orders];
     double sun_depth[smoke_bands]; /* optical depth of other volumes towards the sun */
     double d_sun_enu[3];
+    double shades_per_m; /* extinction at the centre of the sunlight that falls on what lies below: smoke_shadow */
     double billow, pattern[3]; /* amplitude of the noise pattern; its origin */
 } SmokeVolume;
 
@@ -130,6 +131,16 @@ void smoke_apply(float *radiance, const SmokeRays *veil, int band, int count);
 /* Column of a volume of unit peak density between two distances along o + s d, m; no pattern. */
 double smoke_column_m(const SmokeVolume *volume, const double o_enu[3], const double d_enu[3], double from_m,
                       double to_m);
+
+/* Dims the share of the sun's direct light at places by what the volumes in its way leave: exp(-depth) of visible
+ * light, without the forward peak of what they scatter, which goes on as the sun does: f = asymmetry^2 of it (delta-
+ * Eddington: Joseph, Wiscombe & Weinman, J. Atmos. Sci. 33, 1976). Columns are those of the mean, without pattern; of
+ * more than 512 volumes in the way of a block the nearest to the eye count. sun: of each hit, 0 .. 1. */
+void smoke_shadow(float *sun, const SmokeVolume *volume, int count, const Hits *hits, const double sun_d_enu[3]);
+
+/* Share that a half space of grains of that albedo, which scatter evenly, sends back of even light: van de Hulst,
+ * Multiple Light Scattering (1980), within 0.003 (tests/render/test_smoke_shadow.c). */
+double smoke_thick_albedo(double albedo);
 
 /* ---- the volumes of a frame ------------------------------------------------------------------ */
 

@@ -1,7 +1,9 @@
 /* render/smoke/smoke_effects.c: the radiance of smoke puffs: thermal emission by Planck, scattered light of sun and
  * surroundings by the albedo.
  *
- * Source of a grey medium (Kirchhoff): (1 - albedo) Planck(T) + albedo * mean incident radiance. Sunlight is
+ * Source of a grey medium (Kirchhoff): (1 - albedo) Planck(T) + albedo * mean incident radiance. In a thick cloud the
+ * incident radiance is its own: of the thermal bands the albedo goes from that of a grain, where it is thin, to that of
+ * a half space of such grains (van de Hulst 1980, its fit for isotropic scattering). Sunlight is
  * scattered with a phase function (Henyey and Greenstein, 1941) and, as multiple scattering fills a cloud, in
  * smoke_scatter_orders orders, each with half the share, half the asymmetry and half the depth of the one before
  * (Wrenninge, Kulla, Lundqvist 2013): an approximation; a thick white cloud lit from behind the eye gets a
@@ -40,12 +42,26 @@ typedef struct Placed {
     int                index; /* index in the snapshot: order of equals */
 } Placed;
 
+double smoke_thick_albedo(double albedo)
+{
+    const double s = sqrt(1 - albedo);
+    return (1 - s) * (1 - 0.139 * s) / (1 + 1.17 * s);
+}
+
+/* Share that a volume of such grains scatters of what falls onto it, by its own optical depth. */
+static double thermal_albedo(double albedo, double depth)
+{
+    return albedo + (smoke_thick_albedo(albedo) - albedo) * -expm1(-depth);
+}
+
 /* Source terms of one volume in one band. i: its air path. */
 static void light_volume(Placed *p, int band, const Air *air, const float *ground_rho, const AirPaths *veils, int i)
 {
     SmokeVolume *v = &p->volume;
     const bool   optical = band < effect_band_mwir;
-    const double albedo = p->law->albedo[band], sun_w_m2 = air->light.sun_w_m2[band];
+    const double through_m = (v->even ? 2 : 16.0 / 15) * v->across_m; /* column of its middle, of unit density there */
+    const double grain = p->law->albedo[band], sun_w_m2 = air->light.sun_w_m2[band];
+    const double albedo = optical ? grain : thermal_albedo(grain, v->extinction_per_m[band] * through_m);
     /* mean radiances from above and below: thermal ground emits, ground in daylight reflects */
     const double above = air->light.sky_w_m2[band] / pi_rad;
     const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->light.sun_d_enu[2], 0) / pi_rad + above)
@@ -57,7 +73,7 @@ static void light_volume(Placed *p, int band, const Air *air, const float *groun
     v->from_top[band] = lit * (above - below);
 
     const double cosine = v3_dot(p->d_eye_enu, air->light.sun_d_enu); /* forward: the sun behind the puff */
-    double       share = veils->sun_transmittance[i] * albedo * sun_w_m2, asymmetry = optical ? p->law->asymmetry : 0;
+    double       share = veils->sun_transmittance[i] * grain * sun_w_m2, asymmetry = optical ? p->law->asymmetry : 0;
     for (int order = 0; order < smoke_scatter_orders; order++) {
         v->sun[band][order] = share * phase_per_sr(asymmetry, cosine);
         share *= 0.5;
@@ -211,8 +227,11 @@ Status smoke_effects_scene(EffectScene *out, const Snapshot *snapshot, const Eff
         for (int k = 0; k < 3; k++) v->pattern[k] = 256 * random_uniform(puff->seed, 80, 0, (uint64_t)k);
         v->pattern[2] -= 0.25 * puff->age_s; /* its pattern moves upwards through its own outline */
         placed[count].law = law;
-        placed[count].temp_k =
-            volume.temp_k + daylight_temp_at(&air->light, volume.p_enu) - air->light.weather.air_temp_k;
+        const double air_k = air->light.weather.air_temp_k;
+        const double lifted_k = air->light.ground_k > 0 ? volume.ground_share * (air->light.ground_k - air_k) : 0;
+        placed[count].temp_k = volume.temp_k + lifted_k + daylight_temp_at(&air->light, volume.p_enu) - air_k;
+        v->shades_per_m = volume.extinction_per_m[effect_band_pan] *
+                          (1 - law->albedo[effect_band_pan] * law->asymmetry * law->asymmetry);
         placed[count].group = puff->group;
         placed[count].co2_kg_m3 = volume.co2_kg_m3;
         placed[count].h2o_kg_m3 = volume.h2o_kg_m3;

@@ -13,6 +13,7 @@
 #include "terrain/weather/weather.h"
 #include "terrain/earth/geoid.h"
 #include "terrain/ground/ground_image.h"
+#include "terrain/from_files/culture_import.h"
 #include "terrain/from_files/elevation_import.h"
 #include "terrain/store/store.h"
 #include "sensor/settings/command_line.h"
@@ -144,6 +145,16 @@ static bool terrain_is_valid(const Check *c)
     return good;
 }
 
+static bool culture_is_valid(const Check *c)
+{
+    const char *files = strpbrk(c->config->terrain.buildings, "/.") ? c->config->terrain.buildings : "";
+    const char *trees = c->config->terrain.trees;
+    raster_sources_from(c->config->terrain.sources_from);
+    return (!*files && !*trees) || culture_files_good(files, trees) ||
+           report(c, *files ? "terrain.buildings" : "terrain.trees",
+                  "`pitviper terrain culture FILE` lists what it holds");
+}
+
 static bool atmosphere_is_valid(const Check *c)
 {
     Atmosphere   *atmosphere = NULL;
@@ -254,6 +265,7 @@ static bool tables_are_valid(Check *c)
     good &= given_heat_is_valid(c);
     good &= given_signatures_are_valid(c);
     good &= terrain_is_valid(c);
+    good &= culture_is_valid(c);
     if (!known.bundled)
         known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "radars.csv", radar_preset_check) &&
                         is_bundled(c, "heat.csv", read_heat) && is_bundled(c, "heat_machines.csv", read_machines) &&

@@ -37,8 +37,8 @@ Status exercise_places(const Cast *cast, const char *path, bool overwrite)
     const Scenario     *s = cast->scenario;
     char                place[scenario_place_size];
     int                 far = 0;
-    if (!s->ground.invented) {
-        if (path) log_error("exercise: --places: no entity hides: `hide` needs ground.invented: true");
+    if (!s->ground.planted) {
+        if (path) log_error("exercise: --places: no entity hides: `hide` needs ground.planted: true");
         return path ? STATUS_BAD_VALUE : STATUS_OK;
     }
     scenario_place_text(place, s);

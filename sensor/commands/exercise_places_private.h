@@ -5,7 +5,7 @@
 #include "entities/exercise/exercise.h"
 
 /* Prints the settings of a node with this ground, and what hides; writes the table of places to a file, NULL: to none.
- * Nothing without ground.invented. STATUS_IO, STATUS_BAD_VALUE: logged. */
+ * Nothing without ground.planted. STATUS_IO, STATUS_BAD_VALUE: logged. */
 Status exercise_places(const Cast *cast, const char *path, bool overwrite);
 
 #endif

@@ -383,16 +383,13 @@ static Status open_files(Live *l)
     if (status == STATUS_OK) status = overwrite_video("run", config, l->run.bands, NULL, o->overwrite);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
-    const bool radar = strcmp(config->radar.preset, "none") != 0;
-    if ((radar || config->quality.deadline) && strcasecmp(output_ending(config->record.path), ".pcap") == 0)
-        log_warn(
-            "run: %s has no room for which frames give up sampling (quality.deadline)%s (pcap): a replay has it in all; "
-            "name it .pcapng",
-            config->record.path, radar ? ", or are without radar" : "");
+    const bool radar = strcmp(config->radar.preset, "none") != 0, less = radar || config->quality.deadline;
     if (strcasecmp(output_ending(config->record.path), ".pcap") == 0)
-        log_warn("run: %s has no room for what the ground was made from (pcap): a replay makes its own by the whole "
-                 "recording; name it .pcapng",
-                 config->record.path);
+        log_warn("run: %s has no room for %s%s%swhat the ground was made from (pcap): a replay makes that by the whole "
+                 "recording%s; name it .pcapng",
+                 config->record.path, less ? "which frames give up sampling (quality.deadline)" : "",
+                 radar ? ", or are without radar" : "", less ? ", and for " : "",
+                 less ? ", and has frames in all" : "");
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 

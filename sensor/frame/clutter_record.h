@@ -6,7 +6,10 @@
 #include "entities/scenery/scenery.h"
 #include "render/frame/picture.h"
 
-enum { clutter_id_size = 17 };
+enum {
+    clutter_id_size = 17,
+    coco_clutter_category = 200, /* of coco.json: the same whatever classes targets have */
+};
 
 typedef struct ClutterRecord {
     const char  *class_name;          /* scenery_class_name */

@@ -1,5 +1,6 @@
 /* sensor/score/coco_truth.c: images and annotations of coco.json, read piece by piece. */
 #include "sensor/score/coco_truth.h"
+#include "sensor/frame/clutter_record.h"
 #include "sensor/score/json_member.h"
 
 #include <stdlib.h>
@@ -76,6 +77,8 @@ static Status add_target(CocoTruth *coco, const json_t *from, const JsonStream *
 {
     CocoTarget t = {0};
     long long  category;
+    if (json_member_whole(&category, from, "category_id", coco_clutter_category, coco_clutter_category))
+        return STATUS_OK; /* no target */
     if (!json_member_whole(&t.id, from, "id", 0, 1LL << 52) ||
         !json_member_whole(&t.image, from, "image_id", 0, 1LL << 52) ||
         !json_member_whole(&category, from, "category_id", 1, 255) || !json_member_numbers(t.box, 4, from, "bbox") ||

@@ -161,6 +161,24 @@ static void count_errors(ErrorSums *e, const MatchTarget *t, const MatchAnswer *
     e->range2 += range * range;
 }
 
+/* The class of the clutter that an answer lies on: of several that whose box is smallest, which it must be within, or
+ * beside by a pixel at most. CLUTTER_NONE: on none that is known. */
+static int clutter_below(const TruthFrame *frame, const double centre[2])
+{
+    static const double beside_px = 1;
+    double              least = INFINITY;
+    int                 class_number = CLUTTER_NONE;
+    for (int i = 0; i < frame->clutter_count; i++) {
+        const double *b = frame->clutter[i].box, area = b[2] * b[3];
+        if (!(area < least) || !(centre[0] >= b[0] - beside_px && centre[0] <= b[0] + b[2] + beside_px &&
+                                 centre[1] >= b[1] - beside_px && centre[1] <= b[1] + b[3] + beside_px))
+            continue;
+        least = area;
+        class_number = frame->clutter[i].class_number;
+    }
+    return class_number;
+}
+
 /* Rates and confusion, of the answers whose score counts. */
 static void count_matches(Judge *j, const BandFrame *of)
 {
@@ -178,6 +196,7 @@ static void count_matches(Judge *j, const BandFrame *of)
         j->ignored += m->names[k] == NAMES_BESIDE;
         if (m->names[k] != NAMES_NOTHING) continue;
         wrong++;
+        if (m->answer[k].on_image) j->on_clutter[clutter_below(of->frame, m->answer[k].centre)]++;
         j->confusion.count[classes][class_number ? class_number - 1 : classes]++;
     }
     count_frame(j, of, wrong);

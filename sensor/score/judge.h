@@ -22,6 +22,7 @@ typedef struct Judge {
 
     RateSums       total, band[BAND_COUNT], against[AGAINST_COUNT][score_bins_max];
     ScoreConfusion confusion;
+    long long      on_clutter[CLUTTER_CLASSES];
     ErrorSums      errors;
     Precision      precision;
     Tracks        *tracks[BAND_COUNT]; /* of the sequence; NULL: none yet */

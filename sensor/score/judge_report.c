@@ -119,6 +119,7 @@ Status judge_report(ScoreRecogniser *out, Judge *j)
     report_errors(&out->errors, &j->errors);
     report_ages(&out->ages, j);
     out->confusion = j->confusion;
+    memcpy(out->on_clutter, j->on_clutter, sizeof out->on_clutter);
     out->tracks = j->track_score;
     out->missed = j->missed;
     out->false_alarms = j->false_alarms;

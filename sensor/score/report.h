@@ -3,6 +3,7 @@
 #ifndef SENSOR_SCORE_REPORT_H
 #define SENSOR_SCORE_REPORT_H
 
+#include "entities/scenery/scenery.h"
 #include "sensor/score/tracks.h"
 #include "sensor/score/worst.h"
 
@@ -121,7 +122,8 @@ typedef struct ScoreRecogniser {
     double         map, map50, ap_centre; /* means over classes with a target */
     int            classes;               /* with a target or an answer */
     ScoreClass     of_class[score_classes_max];
-    ScoreConfusion confusion; /* by target_class number - 1 */
+    ScoreConfusion confusion;                   /* by target_class number - 1 */
+    long long      on_clutter[CLUTTER_CLASSES]; /* false alarms that lie on clutter, by its SceneryClass */
     ScoreErrors    errors;
     ScoreAges      ages;
     int            points;

@@ -200,6 +200,21 @@ static const Field confusion_rows[] = {
      .item = next_row, FIELD_OBJECT(confusion_row_rows)},
 };
 
+/* ---- clutter ------------------------------------------------------------------------------------- */
+
+static const void *next_clutter(FieldAt *at, int i)
+{
+    const ScoreRecogniser *r = at->of;
+    if (i + 1 >= CLUTTER_CLASSES) return NULL;
+    const bool any = r->on_clutter[i + 1] > 0;
+    return field_keyed(at, any ? scenery_class_name((SceneryClass)(i + 1)) : "", &r->on_clutter[i + 1]);
+}
+
+static const Field clutter_rows[] = {
+    {"CLUTTER", "", "", "where it is 0", "how many lie on clutter of this class", .item = next_clutter,
+     .kind = FIELD_OF_LONG_LONG, .size = sizeof(long long)},
+};
+
 /* ---- the rest ------------------------------------------------------------------------------------ */
 
 static const void *errors_of(const void *of)
@@ -307,6 +322,10 @@ static const Field recogniser_rows[] = {
     {"classes", "", "", "", "average precision by class", FIELD_OBJECT(classes_rows)},
     {"confusion", "", "", "", "what targets were answered as; `false`: answers where nothing is",
      FIELD_OBJECT(confusion_rows)},
+    {"on_clutter", "", "", "when there is none",
+     "false alarms on clutter (clutter[] of truth.jsonl): centres within its box or 1 px beside it; of several the "
+     "smallest",
+     .unless_empty = true, FIELD_OBJECT(clutter_rows)},
     {"errors", "", "", "when nothing was found", "centroid and range", .in = errors_of, FIELD_OBJECT(errors_rows)},
     {"ages", "", "", "when no answer has latency_ms", "age of answers", .in = ages_of, FIELD_OBJECT(ages_rows)},
     {"tracks", "", "", "when no answer has a track", "how the answers' track numbers follow targets", .in = tracks_of,

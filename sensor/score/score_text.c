@@ -113,6 +113,18 @@ static void print_confusion(FILE *to, const ScoreRecogniser *r)
     }
 }
 
+static void print_on_clutter(FILE *to, const ScoreRecogniser *r)
+{
+    bool any = false;
+    for (int k = CLUTTER_NONE + 1; k < CLUTTER_CLASSES; k++) {
+        if (r->on_clutter[k] == 0) continue;
+        fprintf(to, "%s%s %lld", any ? ", " : "  false alarms on clutter: ", scenery_class_name((SceneryClass)k),
+                r->on_clutter[k]);
+        any = true;
+    }
+    if (any) fputc('\n', to);
+}
+
 /* ---- errors and ages -------------------------------------------------------------------------------- */
 
 static void print_errors(FILE *to, const ScoreRecogniser *r)
@@ -160,6 +172,7 @@ static void print_recogniser(FILE *to, const ScoreRecogniser *r, bool full)
             figure(centre, r->ap_centre));
     if (full) print_classes(to, r);
     if (full) print_confusion(to, r);
+    print_on_clutter(to, r);
     print_errors(to, r);
     print_tracks(to, &r->tracks);
 }

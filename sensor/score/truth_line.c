@@ -93,6 +93,38 @@ static Status read_targets(TruthFrame *out, const json_t *list, const JsonStream
     return has_twice(out) ? wrong(s, "the same `entity` twice in `targets`") : STATUS_OK;
 }
 
+/* ---- clutter -------------------------------------------------------------------------------------- */
+
+static int clutter_class(const char *name)
+{
+    for (int k = CLUTTER_NONE + 1; name && k < CLUTTER_CLASSES; k++)
+        if (strcmp(name, scenery_class_name((SceneryClass)k)) == 0) return k;
+    return CLUTTER_NONE;
+}
+
+/* list: NULL where the frame shows none. */
+static Status read_clutter(TruthFrame *out, const json_t *list, const JsonStream *s)
+{
+    const size_t count = json_array_size(list);
+    out->clutter_count = 0;
+    if (!list) return STATUS_OK;
+    if (!json_is_array(list) || count > 1 << 20) return wrong(s, "`clutter` is no list");
+    if (count > (size_t)out->clutter_room) {
+        TruthClutter *grown = realloc(out->clutter, 2 * count * sizeof *grown);
+        if (!grown) return STATUS_NO_MEMORY;
+        out->clutter = grown, out->clutter_room = (int)(2 * count);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const json_t *from = json_array_get(list, i);
+        TruthClutter *c = &out->clutter[i];
+        c->class_number = clutter_class(json_string_value(json_object_get(from, "class")));
+        if (!json_is_object(from) || !read_box(c->box, from, "box_px"))
+            return wrong(s, "an entry of `clutter` without `box_px`");
+    }
+    out->clutter_count = (int)count;
+    return STATUS_OK;
+}
+
 /* ---- the frame ------------------------------------------------------------------------------------ */
 
 /* Local solar time: 12 h and the sun's hour angle, from where it stands. */
@@ -175,6 +207,7 @@ static Status read_frame(TruthFrame *out, const json_t *line, const JsonStream *
     Status status = read_sensor(out, sensor, s);
     if (status == STATUS_OK) status = read_camera(out, host, sensor, s);
     if (status == STATUS_OK) status = read_targets(out, json_object_get(line, "targets"), s);
+    if (status == STATUS_OK) status = read_clutter(out, json_object_get(line, "clutter"), s);
     out->hour = solar_hour(json_member_number(sun, "azimuth_deg"), json_member_number(sun, "elevation_deg"),
                            json_member_number(host, "lat_deg"));
     return status;
@@ -202,6 +235,7 @@ static Status load(json_t **line, TruthFrame *out, const JsonStream *s)
                                          "distortion",
                                          "ecef_from_cam",
                                          "targets",
+                                         "clutter",
                                          "entity",
                                          "class",
                                          "range_m",
@@ -240,6 +274,7 @@ void truth_frame_free(TruthFrame *frame)
 {
     free(frame->target);
     free(frame->sorted);
+    free(frame->clutter);
     free(frame->text);
     *frame = (TruthFrame){0};
 }

@@ -2,6 +2,7 @@
 #ifndef SENSOR_SCORE_TRUTH_LINE_H
 #define SENSOR_SCORE_TRUTH_LINE_H
 
+#include "entities/scenery/scenery.h"
 #include "render/scene/view.h"
 #include "sensor/score/json_stream.h"
 
@@ -14,17 +15,25 @@ typedef struct TruthTarget {
     double   box[4], amodal[4]; /* left, top, width, height, px; box: of its visible pixels */
 } TruthTarget;
 
+/* What an answer may be misled by. */
+typedef struct TruthClutter {
+    int    class_number; /* SceneryClass; CLUTTER_NONE: of none that this program knows */
+    double box[4];       /* left, top, width, height, px */
+} TruthClutter;
+
 typedef struct TruthFrame {
-    int          frame, width, height;
-    double       time_s, hour, deg2, km2; /* hour: local solar time; km2: of visible ground, NaN: not known */
-    unsigned     bands;
-    double       focal_px, r_cam_from_enu[9]; /* enu: at the sensor */
-    Lens         lens;
-    int          count, room;
-    TruthTarget *target; /* [count], in truth's order; kept from line to line, as the next and text */
-    uint64_t    *sorted; /* [count] their ids, ascending */
-    size_t       text_room;
-    char        *text; /* what is wanted of the line */
+    int           frame, width, height;
+    double        time_s, hour, deg2, km2; /* hour: local solar time; km2: of visible ground, NaN: not known */
+    unsigned      bands;
+    double        focal_px, r_cam_from_enu[9]; /* enu: at the sensor */
+    Lens          lens;
+    int           count, room;
+    TruthTarget  *target; /* [count], in truth's order; kept from line to line, as the next and text */
+    uint64_t     *sorted; /* [count] their ids, ascending */
+    int           clutter_count, clutter_room;
+    TruthClutter *clutter; /* [clutter_count], in truth's order; kept likewise */
+    size_t        text_room;
+    char         *text; /* what is wanted of the line */
 } TruthFrame;
 
 /* Overwrites *out, whose list it may make longer. STATUS_BAD_VALUE, logged: not a frame of truth, or the same entity

@@ -270,6 +270,14 @@ static bool terrain_good(const Config *config)
                   *config->terrain.cover ? "cover" : "orthophoto");
         good = false;
     }
+    const char *buildings = config->terrain.buildings;
+    if (!strpbrk(buildings, "/.") && strcmp(buildings, "off") != 0 && strcmp(buildings, "invented") != 0) {
+        WordMeant meant = word_meant(buildings);
+        word_consider_list(&meant, "off|invented", '|');
+        log_error("config: %sterrain.buildings: '%s' is neither off nor invented nor the path of a file: ./%s%s",
+                  config_where(config, "terrain.buildings"), buildings, buildings, word_hint(&meant));
+        good = false;
+    }
     return good;
 }
 

@@ -193,6 +193,8 @@ enum { config_paths_size = 4096 };
         (PUBLISH_PAIRS_OFF, "off")(PUBLISH_PAIRS_TARGET, "target")(PUBLISH_PAIRS_ALL, "all"), \
         "replay only: render each frame also without its target, or without any entity, and both without noise") \
     ROW(BOOL, publish., coco, false, "replay only: write coco.json, boxes and masks of visible targets") \
+    ROW(BOOL, publish., coco_clutter, false, \
+        "coco.json has what is seen of clutter (terrain.clutter) too, in the category `clutter`; false: targets alone") \
     /* of 4 no class can be told */ \
     ROW(INT, publish., coco_min_pixels, 5, 1, 1000000, "px", \
         "targets with fewer mask pixels are ignore regions of coco.json (iscrowd)") \
@@ -295,7 +297,7 @@ enum { config_paths_size = 4096 };
         "distance between elevation posts; 0: 4 for synthetic terrain, else that of the files") \
     ROW(TEXT, terrain., place, "", 80, "", \
         "latitude and longitude, degrees, and height, m, of synthetic ground that follows from them and the seed alone, " \
-        "as an exercise with ground.invented was placed on: 50.1,8.6,120; empty: led through the exercise") \
+        "as an exercise with ground.planted was placed on: 50.1,8.6,120; empty: led through the exercise") \
     ROW(PATH, terrain., store, "", 1024, \
         "terrain store of `pitviper terrain import`, instead of elevation, cover and orthophoto; empty: none") \
     ROW(PATHS, terrain., elevation, "", config_paths_size, \
@@ -323,8 +325,8 @@ enum { config_paths_size = 4096 };
     ROW(SWITCH, terrain., detail, true, "on|off", \
         "noise of the ground within each surface class (etc/ground_detail.csv); off: classes of one value") \
     ROW(NAME_OR_PATHS, terrain., buildings, "off", config_paths_size, \
-        "files of buildings, walls, roads and power lines (GeoJSON, Shapefile, GeoPackage), separated by commas; invented: " \
-        "villages, farms and works on synthetic terrain; off: none") \
+        "off, invented or files: buildings, walls, roads, power lines and poles of GeoJSON, Shapefile, GeoPackage or " \
+        "FlatGeobuf files, separated by commas, or a list") \
     ROW(PATH, terrain., trees, "", 1024, \
         "table of trees (CSV): lat and lon, or x_m and y_m; kind, height_m, marked; empty: none") \
     ROW(DOUBLE, terrain., clutter, 0, 0, 20, "", \

@@ -53,7 +53,7 @@ static int cell_along(double m, double from_m, double cell_m, int count)
 /* Items of all cells: counted at first, then written. */
 typedef struct Filling {
     struct CultureIndex *index;
-    size_t              *at; /* [cells] how many there are so far; the ends of the lists that grow */
+    size_t              *at;   /* [cells] how many there are so far; the ends of the lists that grow */
     size_t               left; /* how many more there may be */
     bool                 full;
 } Filling;
@@ -156,7 +156,8 @@ Status culture_index(Culture *c)
     if (!x || !at) goto lost;
     const double wide_m = all.high[0] - all.low[0], high_m = all.high[1] - all.low[1];
     x->x0_m = all.low[0], x->y0_m = all.low[1];
-    x->cell_m = fmax(least_cell_m, 1.001 * fmax(fmax(wide_m, high_m) / 65536, sqrt(wide_m * high_m / (most_cells / 2))));
+    x->cell_m =
+        fmax(least_cell_m, 1.001 * fmax(fmax(wide_m, high_m) / 65536, sqrt(wide_m * high_m / (most_cells / 2))));
     for (;; x->cell_m *= 2) { /* of one cell each record is one item */
         x->nx = (int)(wide_m / x->cell_m) + 1, x->ny = (int)(high_m / x->cell_m) + 1;
         Filling f = {.index = x, .at = at, .left = most_items_a_record * records + most_items_besides};

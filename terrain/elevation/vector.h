@@ -12,11 +12,11 @@ enum { vector_most_tags = 96, vector_most_corners = 65536 };
 /* A feature, or one part of a feature of several. */
 typedef struct VectorPart {
     VectorShape shape;
-    int         corners; /* of a polygon's outer ring, not closed; 0: more than vector_most_corners */
+    int         corners;            /* of a polygon's outer ring, not closed; 0: more than vector_most_corners */
     const double (*lon_lat_rad)[2]; /* [corners]; NaN where there is no such place on the Earth */
-    int         holes;        /* inner rings of a polygon, which are not handed out */
-    int         file, part;   /* number of the file in the list; of the part in its feature */
-    int64_t     number;       /* of the feature among all, from 0 */
+    int         holes;              /* inner rings of a polygon, which are not handed out */
+    int         file, part;         /* number of the file in the list; of the part in its feature */
+    int64_t     number;             /* of the feature among all, from 0 */
     int         tags;
     const char *name[vector_most_tags], *value[vector_most_tags];
 } VectorPart;

@@ -117,11 +117,13 @@ static bool take_end(VectorEnd *out, const uint8_t *data)
 Status vectors_each(VectorEnd *end, Vectors *vectors, const double box_deg[4], VectorTake *take, void *user,
                     const char *key)
 {
-    uint8_t     *data = malloc(wire_data_octets); /* a copy: the reader could change what it shares */
-    Status       status = data ? STATUS_OK : STATUS_NO_MEMORY;
-    int64_t      parts = 0;
-    bool         over = false;
-    WireChannel *channel = raster_child_take(vectors->child);
+    static const double most_octets = 64e9;
+    uint8_t            *data = malloc(wire_data_octets); /* a copy: the reader could change what it shares */
+    Status              status = data ? STATUS_OK : STATUS_NO_MEMORY;
+    int64_t             parts = 0;
+    double              octets = 0; /* of all replies */
+    bool                over = false, filled = true;
+    WireChannel        *channel = raster_child_take(vectors->child);
     while (status == STATUS_OK && !over) {
         WireReply  reply;
         VectorPart part;
@@ -132,17 +134,21 @@ Status vectors_each(VectorEnd *end, Vectors *vectors, const double box_deg[4], V
         if (status != STATUS_OK) break;
         memcpy(data, channel->data, wire_data_octets);
         over = reply.count == 0;
-        if (reply.count < 0 || (over && !take_end(end, data))) status = raster_child_distrust(vectors->child, channel);
+        /* a reader sends as much at once as fits, but for the last time */
+        if (reply.count < 0 || (over && !take_end(end, data)) || (!over && !filled))
+            status = raster_child_distrust(vectors->child, channel);
         for (int n = 0; n < reply.count && status == STATUS_OK; n++) {
             if (!vector_part_read(&part, &at, data, wire_data_octets))
                 status = raster_child_distrust(vectors->child, channel);
             else status = take(user, &part);
         }
-        parts += reply.count;
-        if (status == STATUS_OK && parts > vector_most_parts) {
-            log_error("%s: more than %d points, lines and polygons; cut out an area: ogr2ogr -spat WEST SOUTH EAST NORTH "
-                      "OUT.gpkg FILE",
-                      key, (int)vector_most_parts);
+        filled = at >= wire_data_octets / 2;
+        octets += (double)at, parts += reply.count;
+        if (status == STATUS_OK && (parts > vector_most_parts || octets > most_octets)) {
+            log_error(
+                "%s: more than %d points, lines and polygons, or than %.0f GB of them; cut out an area: ogr2ogr -spat "
+                "WEST SOUTH EAST NORTH OUT.gpkg FILE",
+                key, (int)vector_most_parts, 1e-9 * most_octets);
             status = STATUS_BAD_VALUE;
         }
     }

@@ -39,7 +39,10 @@ void culture_rectangle(double side_m[2], double *along_rad, const double (*p)[2]
 static BuildingUse use_by_size(double area_m2, double levels)
 {
     if (levels >= 4) return BUILDING_FLATS;
-    return area_m2 < 40 ? BUILDING_SHED : area_m2 < 400 ? BUILDING_HOUSE : area_m2 < 1200 ? BUILDING_FLATS : BUILDING_HALL;
+    return area_m2 < 40     ? BUILDING_SHED
+           : area_m2 < 400  ? BUILDING_HOUSE
+           : area_m2 < 1200 ? BUILDING_FLATS
+                            : BUILDING_HALL;
 }
 
 static RoofShape roof_of(BuildingUse use, double area_m2, double levels)
@@ -82,7 +85,7 @@ static double eaves_of(BuildingUse use, double area_m2)
 static double rise_of(BuildingUse use, RoofShape roof, double width_m)
 {
     static const double most_m = 12;
-    const double        slope = use == BUILDING_CHURCH ? 1.28 : use == BUILDING_BARN || use == BUILDING_HALL ? 0.577 : 0.84;
+    const double slope = use == BUILDING_CHURCH ? 1.28 : use == BUILDING_BARN || use == BUILDING_HALL ? 0.577 : 0.84;
     if (roof == ROOF_FLAT) return 0;
     if (roof == ROOF_SKILLION) return fmin(0.18 * width_m, most_m); /* 10 degrees */
     return fmin(0.5 * slope * width_m, most_m);
@@ -90,9 +93,9 @@ static double rise_of(BuildingUse use, RoofShape roof, double width_m)
 
 static int wall_of(BuildingUse use)
 {
-    static const uint8_t wall[BUILDING_USES] = {[BUILDING_HOUSE] = FABRIC_RENDER, [BUILDING_FLATS] = FABRIC_CONCRETE,
-                                                [BUILDING_BARN] = FABRIC_TIMBER,  [BUILDING_SHED] = FABRIC_TIMBER,
-                                                [BUILDING_HALL] = FABRIC_SHEET,   [BUILDING_CHURCH] = FABRIC_STONE};
+    static const uint8_t wall[BUILDING_USES] = {
+        [BUILDING_HOUSE] = FABRIC_RENDER, [BUILDING_FLATS] = FABRIC_CONCRETE, [BUILDING_BARN] = FABRIC_TIMBER,
+        [BUILDING_SHED] = FABRIC_TIMBER,  [BUILDING_HALL] = FABRIC_SHEET,     [BUILDING_CHURCH] = FABRIC_STONE};
     return wall[use];
 }
 
@@ -126,8 +129,8 @@ static HeightFrom set_heights(Building *b, const CultureFacts *f, double area_m2
     if (isnan(rise_m) && roof_levels > 0 && b->roof != ROOF_FLAT) rise_m = 0.9 * storey_m * roof_levels;
     if (isnan(rise_m)) rise_m = rise_of(use, (RoofShape)b->roof, width_m);
     if (b->roof == ROOF_FLAT) rise_m = 0;
-    double     eaves_m = eaves_of(use, area_m2);
-    HeightFrom from = HEIGHT_FROM_USE;
+    double             eaves_m = eaves_of(use, area_m2);
+    HeightFrom         from = HEIGHT_FROM_USE;
     const CultureRule *rule = f->what[VECTOR_POLYGON];
     if (rule && rule->height_m > 0) eaves_m = rule->height_m;
     if (!isnan(levels)) eaves_m = storey_m * levels, from = HEIGHT_FROM_LEVELS;
@@ -162,7 +165,7 @@ void culture_building_make(Building *out, HeightFrom *from, int *mended, const C
     const int          of_rule = rule && rule->makes == MAKES_BUILDING ? rule->kind : -1;
     Building           b = {0};
     culture_rectangle(side_m, &along_rad, corner_m, corners);
-    const BuildingUse use = f->use >= 0   ? (BuildingUse)f->use
+    const BuildingUse use = f->use >= 0    ? (BuildingUse)f->use
                             : of_rule >= 0 ? (BuildingUse)of_rule
                                            : use_by_size(area_m2, f->levels);
     b.use = (uint8_t)use;

@@ -33,13 +33,14 @@ static void put_building(FILE *to, const Drawing *d, const Building *b)
         if (k) fputs(", ", to);
         put_place(to, d->frame, p[0], p[1], (double)b->base_m);
     }
-    fprintf(to,
-            "]]}, \"properties\": {\"record\": \"building\", \"use\": \"%s\", \"base_m\": %.3f, \"eaves_m\": %.3f, "
-            "\"ridge_m\": %.3f, \"ridge_rad\": %.4f, \"roof\": \"%s\", \"wall\": \"%s\", \"cover\": \"%s\", \"levels\": "
-            "%d, \"heated\": %s, \"chimneys\": %d, \"damage\": %d}}",
-            culture_use_name(b->use), (double)b->base_m, (double)b->eaves_m, (double)b->ridge_m, (double)b->ridge_rad,
-            culture_roof_name(b->roof), culture_fabric_name(b->wall_fabric), culture_fabric_name(b->roof_fabric),
-            b->levels, b->heated ? "true" : "false", b->chimneys, b->damage);
+    fprintf(
+        to,
+        "]]}, \"properties\": {\"record\": \"building\", \"use\": \"%s\", \"base_m\": %.3f, \"eaves_m\": %.3f, "
+        "\"ridge_m\": %.3f, \"ridge_rad\": %.4f, \"roof\": \"%s\", \"wall\": \"%s\", \"cover\": \"%s\", \"levels\": "
+        "%d, \"heated\": %s, \"chimneys\": %d, \"damage\": %d}}",
+        culture_use_name(b->use), (double)b->base_m, (double)b->eaves_m, (double)b->ridge_m, (double)b->ridge_rad,
+        culture_roof_name(b->roof), culture_fabric_name(b->wall_fabric), culture_fabric_name(b->roof_fabric), b->levels,
+        b->heated ? "true" : "false", b->chimneys, b->damage);
 }
 
 static void put_line(FILE *to, const Drawing *d, const CultureLine *l)
@@ -75,11 +76,12 @@ static void put_all(FILE *to, const void *user)
         const CulturePoint *p = &c->point[n];
         begin(to, &more, p->id, "Point");
         put_place(to, d->frame, p->x_m, p->y_m, (double)p->base_m);
-        fprintf(to,
-                "}, \"properties\": {\"record\": \"point\", \"kind\": \"%s\", \"base_m\": %.3f, \"size_m\": [%.3f, %.3f, "
-                "%.3f], \"heading_rad\": %.4f}}",
-                culture_point_name(p->kind), (double)p->base_m, (double)p->size_m[0], (double)p->size_m[1],
-                (double)p->size_m[2], (double)p->heading_rad);
+        fprintf(
+            to,
+            "}, \"properties\": {\"record\": \"point\", \"kind\": \"%s\", \"base_m\": %.3f, \"size_m\": [%.3f, %.3f, "
+            "%.3f], \"heading_rad\": %.4f}}",
+            culture_point_name(p->kind), (double)p->base_m, (double)p->size_m[0], (double)p->size_m[1],
+            (double)p->size_m[2], (double)p->heading_rad);
     }
     for (int n = 0; n < c->trees; n++) {
         const CultureTree *t = &c->tree[n];

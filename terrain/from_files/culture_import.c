@@ -214,7 +214,19 @@ static Status add_tree(Import *i, const double p_m[2], const CultureRule *rule)
     return culture_add_tree(i->culture, &t);
 }
 
-/* Plants along a line: trees 8 m apart, plants of a hedge 1.2 m. */
+/* Which part of a piece is within the square: from t[0] to t[1] of its length; t[0] > t[1]: none. */
+static void clip(double t[2], const double a[2], const double b[2], double half_m)
+{
+    t[0] = 0, t[1] = 1;
+    for (int c = 0; c < 2; c++) {
+        const double d = b[c] - a[c], low = (-half_m - a[c]) / d, high = (half_m - a[c]) / d;
+        if (d != 0) t[0] = fmax(t[0], fmin(low, high)), t[1] = fmin(t[1], fmax(low, high));
+        else if (fabs(a[c]) > half_m) t[0] = 2;
+    }
+}
+
+/* Plants along a line: trees 8 m apart, plants of a hedge 1.2 m. Every step within the square is a record, so that the
+ * work has a record's limit. */
 static Status add_row(Import *i, const double (*p)[2], int corners)
 {
     const CultureRule *rule = rule_of(i);
@@ -223,12 +235,16 @@ static Status add_row(Import *i, const double (*p)[2], int corners)
     Status             status = STATUS_OK;
     for (int k = 0; k + 1 < corners && status == STATUS_OK; k++) {
         const double dx = p[k + 1][0] - p[k][0], dy = p[k + 1][1] - p[k][1], length_m = hypot(dx, dy);
-        if (!piece_is_near(i, p[k], p[k + 1])) continue;
-        for (; next_m < length_m && status == STATUS_OK; next_m += apart_m) {
-            const double place[2] = {p[k][0] + dx * next_m / length_m, p[k][1] + dy * next_m / length_m};
+        double       t[2] = {2, 1};
+        if (!isfinite(length_m)) continue;
+        if (piece_is_near(i, p[k], p[k + 1])) clip(t, p[k], p[k + 1], i->from->half_m);
+        const double first = fmax(ceil((t[0] * length_m - next_m) / apart_m), 0);
+        for (double at_m = next_m + first * apart_m; at_m < fmin(length_m, t[1] * length_m) && status == STATUS_OK;
+             at_m += apart_m) {
+            const double place[2] = {p[k][0] + dx * at_m / length_m, p[k][1] + dy * at_m / length_m};
             if (is_within(i->from, place)) status = add_tree(i, place, rule);
         }
-        next_m -= length_m;
+        next_m += fmax(ceil((length_m - next_m) / apart_m), 0) * apart_m - length_m;
     }
     return status;
 }
@@ -307,7 +323,7 @@ static Status read_vectors(Import *i)
     Vectors   vectors = {0};
     VectorEnd end = {0};
     double    box_deg[4];
-    Status    status = culture_rules_open(&i->rules);
+    Status    status = culture_rules_open(&i->rules, NULL);
     box_of(box_deg, i->from);
     i->corner_m = malloc((vector_most_corners + 1) * sizeof *i->corner_m);
     if (status == STATUS_OK && !i->corner_m) status = STATUS_NO_MEMORY;
@@ -324,7 +340,7 @@ static Status read_vectors(Import *i)
 
 /* ---- all of it ---------------------------------------------------------------------------------------- */
 
-/* Leaves out poles and masts that carry a power line, whose corners are poles, and trees that the files have twice. */
+/* Leaves out poles and masts that carry a power line, whose corners are poles. */
 static Status leave_twice(Culture *c, CultureReport *report)
 {
     static const double same_m = 1;
@@ -333,7 +349,7 @@ static Status leave_twice(Culture *c, CultureReport *report)
     if (status != STATUS_OK) return status;
     for (int n = 0; n < c->points; n++) {
         const CulturePoint *p = &c->point[n];
-        const bool carries = p->kind == CULTURE_POLE || p->kind == CULTURE_MAST;
+        const bool          carries = p->kind == CULTURE_POLE || p->kind == CULTURE_MAST;
         if (carries && culture_line_near(c, CULTURE_POWER_LINE, p->x_m, p->y_m, same_m) >= 0)
             report->left[CULTURE_LEFT_TWICE]++;
         else c->point[kept++] = *p;
@@ -394,10 +410,26 @@ Status culture_open(Culture *out, CultureReport *report, const CultureFiles *fro
     return STATUS_OK;
 }
 
+bool culture_files_good(const char *buildings, const char *trees)
+{
+    LocalFrame frame;
+    Geodetic   middle = {0};
+    Culture    culture = {0};
+    if (*buildings && !culture_middle(&middle, buildings)) return false;
+    const bool good =
+        local_frame_at(&frame, &middle) == STATUS_OK &&
+        culture_open(
+            &culture, NULL,
+            &(CultureFiles){.buildings = buildings, .trees = trees, .frame = &frame, .half_m = culture_farthest_m}) ==
+            STATUS_OK;
+    culture_free(&culture);
+    return good;
+}
+
 bool culture_middle(Geodetic *out, const char *files)
 {
-    Vectors      vectors = {0};
-    const Status status = vectors_open(&vectors, files, "terrain.buildings");
+    Vectors       vectors = {0};
+    const Status  status = vectors_open(&vectors, files, "terrain.buildings");
     const double *b = vectors.box_deg;
     const bool    there = status == STATUS_OK && isfinite(b[0] + b[1] + b[2] + b[3]);
     if (there)

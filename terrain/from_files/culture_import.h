@@ -27,7 +27,7 @@ typedef enum CultureLeft {
     CULTURE_LEFT_CROSSED, /* an outline that crosses itself, is smaller than 1 m2, or is not on the Earth */
     CULTURE_LEFT_OTHER,   /* land use, areas of water, parts of buildings: no record is of it */
     CULTURE_LEFT_HIDDEN,  /* in a tunnel or underground */
-    CULTURE_LEFT_TWICE,   /* poles that a power line has itself; trees of a place that has one */
+    CULTURE_LEFT_TWICE,   /* poles and masts that a power line has itself */
     CULTURE_LEFTS
 } CultureLeft;
 
@@ -37,11 +37,11 @@ typedef enum HeightFrom { HEIGHT_FROM_FILE, HEIGHT_FROM_LEVELS, HEIGHT_FROM_USE,
 typedef struct CultureReport {
     int64_t features; /* read */
     int     left[CULTURE_LEFTS];
-    int     courtyards;         /* inner rings, which are built over */
-    int     mended;             /* numbers that could not be true and were left aside: a height of 9999 m */
-    int     unread;             /* numbers that are none: `tall` */
+    int     courtyards;                /* inner rings, which are built over */
+    int     mended;                    /* numbers that could not be true and were left aside: a height of 9999 m */
+    int     unread;                    /* numbers that are none: `tall` */
     int     height_from[HEIGHTS_FROM]; /* buildings whose height the files state, by levels, by use and size */
-    double  low_m, high_m;      /* ridges of buildings; low_m > high_m: none */
+    double  low_m, high_m;             /* ridges of buildings; low_m > high_m: none */
     int     trees_marked;
 } CultureReport;
 
@@ -50,6 +50,8 @@ typedef struct CultureReport {
 Status culture_open(Culture *out, CultureReport *report, const CultureFiles *from);
 /* "3 outside the terrain, 1 larger than 1 km2 ..."; empty: nothing was left out. */
 void culture_report_left(char *out, size_t out_size, const CultureReport *report);
+/* Whether files and a table can be read, to their ends; what is wrong is logged. Either may be empty. */
+bool culture_files_good(const char *buildings, const char *trees);
 /* The middle of the files' box; false, logged: they cannot be read, or hold nothing. */
 bool culture_middle(Geodetic *out, const char *files);
 

@@ -1,5 +1,5 @@
-/* terrain/from_files/culture_import_private.h: from attributes and places of files to records of culture: what its parts
- * share. */
+/* terrain/from_files/culture_import_private.h: from attributes and places of files to records of culture: what its
+ * parts share. */
 #ifndef TERRAIN_FROM_FILES_CULTURE_IMPORT_PRIVATE_H
 #define TERRAIN_FROM_FILES_CULTURE_IMPORT_PRIVATE_H
 
@@ -56,13 +56,13 @@ typedef enum RuleMakes {
 } RuleMakes;
 
 typedef struct CultureRule {
-    char      key[32], value[48];
-    int       makes;              /* RuleMakes */
-    char      kind_name[24];
-    int       kind; /* by makes: BuildingUse, CultureLineKind ..., an index of the words there; -1: empty */
-    double    height_m, width_m; /* 0: empty */
-    int       surface;           /* SurfaceClass */
-    int       next; /* the next rule of the same key; -1: none */
+    char   key[32], value[48];
+    int    makes; /* RuleMakes */
+    char   kind_name[24];
+    int    kind;              /* by makes: BuildingUse, CultureLineKind ..., an index of the words there; -1: empty */
+    double height_m, width_m; /* 0: empty */
+    int    surface;           /* SurfaceClass */
+    int    next;              /* the next rule of the same key; -1: none */
 } CultureRule;
 
 typedef struct CultureRules {
@@ -71,14 +71,14 @@ typedef struct CultureRules {
     int         *key;  /* [keys] the first rule of each key, by name */
 } CultureRules;
 
-/* Failures are logged with file and line. */
-Status culture_rules_open(CultureRules *out);
+/* path NULL: that of etc/. Failures are logged with file and line. */
+Status culture_rules_open(CultureRules *out, const char *path);
 void   culture_rules_close(CultureRules *rules); /* accepts zeroes */
 
 /* What a feature's attributes say. Numbers are NAN, words -1, where they say nothing. */
 typedef struct CultureFacts {
     const CultureRule *what[VECTOR_POLYGON + 1]; /* what it is as a point, line or polygon; NULL: none of these */
-    bool               known;  /* some rule says what it is, perhaps something else */
+    bool               known;                    /* some rule says what it is, perhaps something else */
     int                use, roof, wall, cover, ground, plant;
     int                roof_way; /* 0: along, 1: across */
     double             height_m, part_height_m, levels, roof_height_m, roof_levels, width_m, lanes, direction_rad;

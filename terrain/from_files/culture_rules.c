@@ -134,7 +134,9 @@ static void sort(CultureRules *rules)
 {
     for (int n = 0; n < rules->count; n++) {
         int at = 0, order = 1;
-        while (at < rules->keys && (order = compare_names(rules->rule[n].key, rules->rule[rules->key[at]].key, name_most)) > 0) at++;
+        while (at < rules->keys &&
+               (order = compare_names(rules->rule[n].key, rules->rule[rules->key[at]].key, name_most)) > 0)
+            at++;
         if (at < rules->keys && order == 0) {
             int last = rules->key[at];
             while (rules->rule[last].next >= 0) last = rules->rule[last].next;
@@ -146,19 +148,20 @@ static void sort(CultureRules *rules)
     }
 }
 
-Status culture_rules_open(CultureRules *out)
+Status culture_rules_open(CultureRules *out, const char *given)
 {
-    char         path[512];
+    char         own[512];
+    const char  *path = given ? given : own;
     CultureRule  row;
     CultureRules rules = {0};
-    if (!etc_path(path, sizeof path, "culture_tags.csv")) {
+    if (!given && !etc_path(own, sizeof own, "culture_tags.csv")) {
         log_error("culture: path of the tables is too long; set PITVIPER_ETC to a shorter one");
         return STATUS_BAD_VALUE;
     }
     rules.rule = calloc((size_t)format.most_rows, sizeof *rules.rule);
     rules.key = calloc((size_t)format.most_rows, sizeof *rules.key);
-    const Status status = rules.rule && rules.key ? table_each(&format, path, &row, sizeof row, take, &rules)
-                                                  : STATUS_NO_MEMORY;
+    const Status status =
+        rules.rule && rules.key ? table_each(&format, path, &row, sizeof row, take, &rules) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         sort(&rules);
         *out = rules;
@@ -180,7 +183,8 @@ static int find_key(const CultureRules *rules, const char *name)
     enum { cut = 10 };
     int low = 0, high = rules->keys - 1;
     while (low <= high) {
-        const int middle = (low + high) / 2, order = compare_names(name, rules->rule[rules->key[middle]].key, name_most);
+        const int middle = (low + high) / 2,
+                  order = compare_names(name, rules->rule[rules->key[middle]].key, name_most);
         if (order == 0) return rules->key[middle];
         if (order < 0) high = middle - 1;
         else low = middle + 1;
@@ -265,7 +269,8 @@ static void apply(CultureFacts *f, const CultureRule *rule, const char *value)
         set_number(f, &f->lanes, culture_number, value);
         break;
     case MAKES_DIRECTION:
-        if (isnan(f->direction_rad)) (void)culture_direction(&f->direction_rad, value); /* of lamps and signs it is words */
+        if (isnan(f->direction_rad))
+            (void)culture_direction(&f->direction_rad, value); /* of lamps and signs it is words */
         break;
     case MAKES_USE:
         if (f->use < 0) f->use = rule->kind;

@@ -41,9 +41,10 @@ static const char *take_unit(double *metres, const char *at)
     static const struct {
         const char *name;
         double      m;
-    } units[] = {{"metres", 1},     {"meters", 1},   {"metre", 1},    {"meter", 1},    {"feet", 0.3048}, {"foot", 0.3048},
-                 {"inches", 0.0254}, {"inch", 0.0254}, {"\"", 0.0254}, {"''", 0.0254},  {"'", 0.3048},    {"ft", 0.3048},
-                 {"in", 0.0254},    {"cm", 0.01},    {"mm", 0.001},   {"km", 1000},    {"m", 1}};
+    } units[] = {
+        {"metres", 1},      {"meters", 1},    {"metre", 1},   {"meter", 1},   {"feet", 0.3048}, {"foot", 0.3048},
+        {"inches", 0.0254}, {"inch", 0.0254}, {"\"", 0.0254}, {"''", 0.0254}, {"'", 0.3048},    {"ft", 0.3048},
+        {"in", 0.0254},     {"cm", 0.01},     {"mm", 0.001},  {"km", 1000},   {"m", 1}};
     *metres = 1;
     for (size_t k = 0; k < sizeof units / sizeof *units; k++)
         if (strncasecmp(at, units[k].name, strlen(units[k].name)) == 0) {

@@ -60,12 +60,13 @@ Status culture_trees_read(Culture *culture, CultureReport *report, const Culture
             continue;
         }
         const int64_t number = n;
-        status = culture_add_tree(culture, &(CultureTree){.id = culture_mix(culture_mix_seed + 1, &number, sizeof number),
-                                                          .x_m = p_m[0],
-                                                          .y_m = p_m[1],
-                                                          .height_m = isnan(row.height_m) ? 0 : (float)row.height_m,
-                                                          .kind = (uint8_t)row.kind,
-                                                          .marked = row.marked == 1});
+        status =
+            culture_add_tree(culture, &(CultureTree){.id = culture_mix(culture_mix_seed + 1, &number, sizeof number),
+                                                     .x_m = p_m[0],
+                                                     .y_m = p_m[1],
+                                                     .height_m = isnan(row.height_m) ? 0 : (float)row.height_m,
+                                                     .kind = (uint8_t)row.kind,
+                                                     .marked = row.marked == 1});
     }
     table_rows_close(&rows);
     return status;

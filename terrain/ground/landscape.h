@@ -14,8 +14,8 @@
 /* Surfaces that lie on whatever else there is, such as roads of culture (terrain/culture/culture_ground.h). Thread-safe
  * functions of what is borrowed. */
 typedef struct LandscapeOver {
-    const void *of;                                                                 /* NULL: nothing lies on it */
-    int (*surface_at)(const void *of, double x_m, double y_m);                      /* SURFACE_NONE: none there */
+    const void *of;                                                                /* NULL: nothing lies on it */
+    int (*surface_at)(const void *of, double x_m, double y_m);                     /* SURFACE_NONE: none there */
     bool (*surface_near)(const void *of, double x_m, double y_m, double within_m); /* whether any is so near */
 } LandscapeOver;
 

@@ -75,8 +75,7 @@ static void pass_index(Kept *kept, Ways *w)
     if (!make_room(kept, &w->item, items, sizeof *w->item, sizeof *w->item)) return;
     kept_pass(kept, w->item, (size_t)items * sizeof *w->item);
     for (int n = 0; kept_is_read(kept) && kept->good && n < items; n++)
-        kept_check(kept,
-                   w->item[n] >> 28 < WAY_ITEMS && (int)(w->item[n] & 0x0fffffff) < rows[w->item[n] >> 28 & 3]);
+        kept_check(kept, w->item[n] >> 28 < WAY_ITEMS && (int)(w->item[n] & 0x0fffffff) < rows[w->item[n] >> 28 & 3]);
 }
 
 static void pass_ways(Kept *kept, Ways *w)

@@ -51,9 +51,9 @@ struct Ways {
     int       cx, cy; /* posts */
     uint32_t *wet;    /* [cy][cx] corners SW, SE, NW, NE, from the lowest octet on */
     /* while ways are laid */
-    float   *height;      /* [cy][cx] above the ellipsoid's curve */
-    float   *flow;        /* [cy][cx] how many cells drain through this one */
-    int32_t *road_vertex; /* [cy][cx] a road's segment in this cell; -1: none */
+    float   *height;       /* [cy][cx] above the ellipsoid's curve */
+    float   *flow;         /* [cy][cx] how many cells drain through this one */
+    int32_t *road_vertex;  /* [cy][cx] a road's segment in this cell; -1: none */
     double (*reported)[2]; /* [reports] where vehicles were reported, one place in each square of 3 m */
     int      reports, reported_room;
     NearGrid reported_near;

@@ -271,8 +271,7 @@ static Status lay_stream(Ways *ways, const WaysGround *ground, Laid *laid, Trace
     }
     const double half_m = 0.5, end_m = clamp(0.5 + 0.12 * sqrt(flow_at(ways, t->p[last])), 0.6, 3.2);
     const int    first = ways->segments;
-    const Status status =
-        ways_append(ways, WAY_STREAM, (const double(*)[2])t->p, t->count, half_m, end_m);
+    const Status status = ways_append(ways, WAY_STREAM, (const double(*)[2])t->p, t->count, half_m, end_m);
     for (int n = first; n < ways->segments; n++)
         laid_put(laid, (double)ways->segment[n].x_m, (double)ways->segment[n].y_m, n);
     return status;

@@ -29,8 +29,8 @@ static bool draw_track(WayLine *control, Status *status, const Ways *ways, const
     const double        length_m = shortest_m + (longest_m - shortest_m) * invented_unit(invented_hash(h, 1, 0));
     const double        sign = h & 1 ? -1 : 1, skew_rad = 0.8 * (invented_unit(invented_hash(h, 2, 0)) - 0.5);
     const double        dx = (double)from->dx, dy = (double)from->dy;
-    double              x = (double)from->x_m, y = (double)from->y_m, heading_rad = atan2(sign * dx, -sign * dy) + skew_rad;
-    const int           steps = (int)(length_m / step_m);
+    double    x = (double)from->x_m, y = (double)from->y_m, heading_rad = atan2(sign * dx, -sign * dy) + skew_rad;
+    const int steps = (int)(length_m / step_m);
     control->count = 0;
     for (int k = 0; k <= steps && *status == STATUS_OK && is_free(ways, ground, x, y); k++) {
         *status = ways_line_add(control, x, y);

@@ -41,6 +41,7 @@ static inline Scenery scenery_of(const Building *b, const double (*p)[2], int n)
 /* A triangle in ENU: its corners, its normal of length twice its area, its part. */
 typedef struct Facet {
     double           p[3][3], n[3];
+    double           facing; /* least cosine between its normal and those of its vertices */
     const ModelPart *part;
 } Facet;
 
@@ -55,6 +56,13 @@ static inline Facet facet(const Scenery *s, int model, int t)
     }
     v3_sub(u, f.p[1], f.p[0]), v3_sub(v, f.p[2], f.p[0]);
     v3_cross(f.n, u, v);
+    f.facing = 1;
+    for (int k = 0; k < 3; k++) {
+        const float *n = m->normal[m->triangle[t][k]];
+        double       n_enu[3];
+        m3_mul_v3(n_enu, s->object[model].r_enu_from_body, (const double[3]){n[0], n[1], n[2]});
+        f.facing = fmin(f.facing, v3_dot(n_enu, f.n) / v3_length(f.n));
+    }
     return f;
 }
 

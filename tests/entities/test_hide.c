@@ -10,7 +10,7 @@
 
 static Scenario scenario;
 
-#define GROUND "place: {lat_deg: 50.1, lon_deg: 8.6, height_m: 120}\nground: {invented: true, seed: 1}\nvehicles:\n"
+#define GROUND "place: {lat_deg: 50.1, lon_deg: 8.6, height_m: 120}\nground: {planted: true, seed: 1}\nvehicles:\n"
 
 static Status read_text(const char *text)
 {
@@ -69,13 +69,13 @@ static Count count_about(const HideGround *ground, const double p[3], const Wood
     return c;
 }
 
-#define MANY                                                                                                                    \
-    GROUND                                                                                                                      \
-        "  - {name: Edge, type: tank, hide: tree-line, hide_m: 400, count: 3, route_m: [[-400, -300]]}\n"                       \
-        "  - {name: Row, type: truck, hide: hedge, hide_m: 400, count: 3, route_m: [[400, -300]]}\n"                            \
-        "  - {name: Wood, type: tank, hide: wood, hide_m: 700, count: 2, route_m: [[300, 300]]}\n"                              \
-        "  - {name: Open, type: tank, hide: open, hide_m: 400, count: 2, route_m: [[-300, 300]], heading_deg: 30, net: true}\n" \
-        "  - {name: Dip, type: jeep, hide: hollow, hide_m: 400, occlusion: 0, route_m: [[0, 0]]}\n"
+#define MANY                                                                                                                \
+    GROUND                                                                                                                  \
+    "  - {name: Edge, type: tank, hide: tree-line, hide_m: 400, count: 3, route_m: [[-400, -300]]}\n"                       \
+    "  - {name: Row, type: truck, hide: hedge, hide_m: 400, count: 3, route_m: [[400, -300]]}\n"                            \
+    "  - {name: Wood, type: tank, hide: wood, hide_m: 700, count: 2, route_m: [[300, 300]]}\n"                              \
+    "  - {name: Open, type: tank, hide: open, hide_m: 400, count: 2, route_m: [[-300, 300]], heading_deg: 30, net: true}\n" \
+    "  - {name: Dip, type: jeep, hide: hollow, hide_m: 400, occlusion: 0, route_m: [[0, 0]]}\n"
 
 static void places_are_of_their_kind(void **state)
 {
@@ -137,7 +137,7 @@ static void nets_are_over_what_they_cover(void **state)
     Cast *cast = cast_of(
         GROUND
         "  - {name: A, type: tank, hide: open, count: 2, route_m: [[0, 0]], net: true}\n"
-        "  - {name: B, type: truck, count: 3, columns: 2, spread_m: 5, heading_deg: 70, route_m: [[300, 50]], net: true}\n");
+        "  - {name: B, type: 1.1.222.7.1.0.0, count: 3, columns: 2, spread_m: 5, heading_deg: 70, route_m: [[300, 50]], net: true}\n");
     assert_int_equal(cast->entity_count, 10);
     for (int n = 0; n < 5; n++) {
         CastPose a, b;
@@ -210,7 +210,7 @@ static void what_is_wrong_is_said(void **state)
         const char *text, *word;
         bool        cast; /* found by the cast alone */
     } bad[] = {
-        {"vehicles:\n  - {name: A, hide: wood, route_m: [[0, 0]]}\n", "hide: needs ground.invented", false},
+        {"vehicles:\n  - {name: A, hide: wood, route_m: [[0, 0]]}\n", "hide: needs ground.planted", false},
         {GROUND "  - {name: A, hide: wood, route_m: [[0, 0], [5, 5]]}\n", "one place in route_m", false},
         {GROUND "  - {name: A, hide: woods, route_m: [[0, 0]]}\n", "hide: 'woods' is not one of none|open", false},
         {GROUND "  - {name: A, hide: beside, route_m: [[0, 0]]}\n", "need each other", false},
@@ -226,7 +226,7 @@ static void what_is_wrong_is_said(void **state)
         {"ground: {seed: -1}\n", "ground.seed: '-1'", false},
         {"ground: {relief_m: 201}\n", "ground.relief_m: '201'", false},
         {"ground: {spacing_m: 0.5}\n", "ground.spacing_m: '0.5'", false},
-        {"ground: {invented: true, store: x.pvterrain}\n", "exclude each other", true},
+        {"ground: {planted: true, store: x.pvterrain}\n", "exclude each other", true},
         {GROUND "  - {name: A, type: helicopter, hide: wood, route_m: [[0, 0]]}\n", "what hides is a vehicle on land",
          true},
         {GROUND "  - {name: A, type: tank, hide: wood, hide_m: 5, count: 30, route_m: [[0, 0]]}\n", "there is no room",

@@ -67,7 +67,8 @@ static void eaves_and_ridge_are_exact(void **state)
             CHECK_NEAR(height_over(&s, "roof", 16, 12), 105.5 + 3.5 * 6 / 12.4, 1e-5);
         }
         if (roof == ROOF_FLAT) CHECK_NEAR(middle_m, 105.5, 1e-5);
-        if (roof == ROOF_FLAT) CHECK_NEAR(highest(&s, "wall"), 109, 1e-5); /* its parapet */
+        if (roof == ROOF_FLAT) CHECK_NEAR(highest(&s, "wall"), 109, 1e-5); /* its parapet, 0.25 m thick */
+        if (roof == ROOF_FLAT) CHECK_NEAR(covered_m2(NULL, &s, "roof", 0), (12 - 0.5) * (8 - 0.5), 1e-6);
         scenery_free(&s);
     }
 }
@@ -107,6 +108,32 @@ static void areas_and_volumes_are_those_of_the_solids(void **state)
     scenery_free(&s);
 }
 
+/* A slab is as thick across its slope as tiles, battens and rafters are, or thatch: what it encloses is its plan by its
+ * upright thickness. */
+static void slabs_have_their_thickness(void **state)
+{
+    (void)state;
+    const double o = scenery_overhang_m, plan_m2 = (8 + 2 * o) * (12 + 2 * o);
+    for (int roof = ROOF_GABLED; roof <= ROOF_SKILLION; roof++)
+        for (int thatch = 0; thatch < 2; thatch++) {
+            Building b = with_roof(roof);
+            b.roof_fabric = thatch ? FABRIC_THATCH : FABRIC_TILE;
+            Scenery s = scenery_of(&b, rectangle, 4);
+            double  volume_m3 = 0;
+            for (int t = 0; t < s.model[0].triangle_count; t++) {
+                const Facet f = facet(&s, 0, t);
+                double      away[3];
+                if (!is_part(&f, "roof")) continue;
+                v3_sub(away, f.p[0], (const double[3]){16, 14, 105});
+                volume_m3 += v3_dot(away, f.n) / 6;
+            }
+            const double slope = roof == ROOF_SKILLION ? 3.5 / 12.4 : 3.5 / 4, m2 = covered_m2(NULL, &s, "roof", 0);
+            if (roof != ROOF_PYRAMIDAL) CHECK_NEAR(m2, plan_m2, 1e-6);
+            CHECK_NEAR(volume_m3, m2 * (thatch ? 0.35 : 0.2) * sqrt(1 + slope * slope), 1e-4);
+            scenery_free(&s);
+        }
+}
+
 /* Under a gable of a width and slope: the triangle over the walls' upright part. */
 static void gables_are_closed_by_triangles(void **state)
 {
@@ -127,6 +154,39 @@ static void gables_are_closed_by_triangles(void **state)
     CHECK_NEAR(low_m, 99.5, 1e-5); /* half a metre into the ground */
     CHECK(corner_m < 105.5 && corner_m > 105.5 - 0.3);
     CHECK_NEAR(end_m2, 8 * (corner_m - low_m) + 0.25 * 8 * 8 * 3.5 / 4, 1e-5);
+    scenery_free(&s);
+}
+
+static double highest_wall_along(const Scenery *s, int axis, double at_m)
+{
+    double high_m = -INFINITY;
+    for (int t = 0; t < s->model[0].triangle_count; t++) {
+        const Facet f = facet(s, 0, t);
+        if (!is_part(&f, "wall") || fabs(f.n[axis]) < 0.999 * v3_length(f.n) || fabs(f.p[0][axis] - at_m) > 1e-6)
+            continue;
+        for (int k = 0; k < 3; k++) high_m = fmax(high_m, f.p[k][2]);
+    }
+    return high_m;
+}
+
+/* Gables stand at the ends of wings, of short ones too, and nowhere else. */
+static void ridges_end_in_gables(void **state)
+{
+    (void)state;
+    static const double bump[8][2] = {{0, 0}, {6, 0}, {6, -2}, {10, -2}, {10, 0}, {16, 0}, {16, 9}, {0, 9}};
+    const Building      b = with_roof(ROOF_GABLED);
+    Scenery             s = scenery_of(&b, u_shape, 8);
+    CHECK(highest_wall_along(&s, 1, 0) < 105.5 && highest_wall_along(&s, 1, 15) > 108);
+    CHECK(highest_wall_along(&s, 0, 0) < 105.5 && highest_wall_along(&s, 0, 20) < 105.5);
+    scenery_free(&s);
+    s = scenery_of(&b, bump, 8);
+    CHECK(highest_wall_along(&s, 1, 0) < 105.5 && highest_wall_along(&s, 1, 9) < 105.5);
+    CHECK(highest_wall_along(&s, 0, 0) > 108 && highest_wall_along(&s, 0, 16) > 108);
+    CHECK(highest_wall_along(&s, 1, -2) > 106.5);
+    scenery_free(&s);
+    s = scenery_of(&b, ell, 6);
+    CHECK(highest_wall_along(&s, 1, 15) > 108 && highest_wall_along(&s, 0, 14) > 108);
+    CHECK(highest_wall_along(&s, 1, 0) < 105.5 && highest_wall_along(&s, 0, 0) < 105.5);
     scenery_free(&s);
 }
 
@@ -181,6 +241,33 @@ static void every_slope_of_a_hipped_roof_is_as_steep(void **state)
     }
 }
 
+/* Chimneys rise 0.9 m over the ridge that they stand on, and are hot where a house is heated. */
+static void chimneys_stand_on_the_ridge(void **state)
+{
+    (void)state;
+    for (int roof = 0; roof < ROOF_SHAPES; roof++)
+        for (int count = 1; count <= 4; count++) {
+            Building b = with_roof(roof);
+            b.chimneys = (uint8_t)count, b.heated = count != 3;
+            Scenery s = scenery_of(&b, rectangle, 4);
+            int     facets = 0;
+            for (int t = 0; t < s.model[0].triangle_count; t++) {
+                const Facet f = facet(&s, 0, t);
+                if (!is_part(&f, "chimney")) continue;
+                facets++;
+                CHECK(f.part->role == (b.heated ? HEAT_FLUE : HEAT_PASSIVE));
+                for (int k = 0; k < 3; k++) {
+                    CHECK(f.p[k][0] > 10 && f.p[k][0] < 22 && f.p[k][1] > 10 && f.p[k][1] < 18);
+                    if (roof != ROOF_GABLED && roof != ROOF_HIPPED) continue;
+                    CHECK(fabs(f.p[k][1] - 14) < 0.3);
+                    CHECK(fabs(f.p[k][2] - 109 - 0.9) < 1e-5 || f.p[k][2] < 109);
+                }
+            }
+            assert_int_equal(facets, 12 * count);
+            scenery_free(&s);
+        }
+}
+
 /* ---- walls ---------------------------------------------------------------------------------------- */
 
 static void windows_stand_in_rows_and_doors_on_the_floor(void **state)
@@ -206,6 +293,13 @@ static void windows_stand_in_rows_and_doors_on_the_floor(void **state)
         }
         if (door) CHECK(fmin(f.p[0][2], fmin(f.p[1][2], f.p[2][2])) < 100.1);
         CHECK(fabs(f.n[2]) < 1e-9);
+        /* half of an upright rectangle */
+        int level = 0, plumb = 0;
+        for (int k = 0; k < 3; k++) {
+            const double *a = f.p[k], *c = f.p[(k + 1) % 3];
+            level += fabs(a[2] - c[2]) < 1e-9, plumb += hypot(a[0] - c[0], a[1] - c[1]) < 1e-9;
+        }
+        CHECK(level == 1 && plumb == 1);
         panes += pane, doors += door;
     }
     CHECK(panes >= 2 * 3 * 6 && doors == 2);
@@ -217,9 +311,61 @@ static void windows_stand_in_rows_and_doors_on_the_floor(void **state)
     scenery_free(&s);
 }
 
+/* A garage opens at an end, towards the drive. */
+static void doors_open_on_drives(void **state)
+{
+    (void)state;
+    static const double drive[2][2] = {{22, 14}, {60, 14}};
+    Culture             c = {0};
+    Scenery             s = {0};
+    Building            b = house;
+    const CultureLine   way = {.id = 5, .width_m = 4, .kind = CULTURE_TRACK, .surface = 1};
+    b.use = BUILDING_SHED;
+    add(&c, &b, rectangle, 4);
+    CHECK(culture_add_line(&c, &way, drive, 2) == STATUS_OK && culture_index(&c) == STATUS_OK);
+    CHECK(scenery_add_buildings(&s, &c, NULL, NULL) == STATUS_OK);
+    int doors = 0;
+    for (int t = 0; t < s.model[0].triangle_count; t++) {
+        const Facet f = facet(&s, 0, t);
+        if (!is_part(&f, "door")) continue;
+        doors++;
+        for (int k = 0; k < 3; k++) CHECK_NEAR(f.p[k][0], 21.9, 1e-6);
+    }
+    assert_int_equal(doors, 2);
+    scenery_free(&s), culture_free(&c);
+}
+
+/* Panes break, soot comes, then roofs have holes and nothing is warm; a ruin has neither. */
+static void damage_goes_on_by_state(void **state)
+{
+    (void)state;
+    int    panes[4] = {0}, warm[4] = {0}, soot[4] = {0};
+    double roof_m2[4] = {0};
+    for (uint64_t id = 0; id < 10; id++)
+        for (int damage = 0; damage < 4; damage++) {
+            Building b = with_roof(ROOF_HIPPED);
+            b.id = id, b.damage = (uint8_t)damage;
+            Scenery s = scenery_of(&b, rectangle, 4);
+            roof_m2[damage] += covered_m2(NULL, &s, "roof", 0);
+            for (int k = 0; k < s.model[0].part_count; k++) {
+                const ModelPart *part = &s.model[0].part[k];
+                const bool       is_soot = !strcmp(part->material, "masonry_sooted");
+                panes[damage] += strcmp(part->material, "glass_window") ? 0 : part->triangle_count / 2;
+                warm[damage] += part->role != HEAT_PASSIVE, soot[damage] += is_soot ? part->triangle_count : 0;
+            }
+            scenery_free(&s);
+        }
+    CHECK(soot[0] == 0 && soot[1] > 500 && soot[2] > soot[1]);
+    CHECK(panes[1] < 0.75 * panes[0] && panes[1] > 0.45 * panes[0]); /* three in five */
+    CHECK(panes[2] < 0.35 * panes[0] && panes[2] > 0 && panes[3] == 0);
+    CHECK(warm[0] > 0 && warm[1] > 0 && warm[2] == 0 && warm[3] == 0);
+    CHECK_NEAR(roof_m2[1], roof_m2[0], 1e-6);
+    CHECK(roof_m2[2] < 0.95 * roof_m2[0] && roof_m2[2] > 0.6 * roof_m2[0] && roof_m2[3] == 0);
+}
+
 static double slope_of_ground(void *user, double x_m, double y_m)
 {
-    (void)y_m;
+    CHECK(x_m > 9 && x_m < 23 && y_m > 9 && y_m < 19); /* asked about the building's own ground */
     return 100 + *(const double *)user * (x_m - 10);
 }
 
@@ -239,13 +385,13 @@ static void buildings_on_a_slope_have_no_windows_in_the_ground(void **state)
         for (int t = 0; t < s.model[0].triangle_count; t++) {
             const Facet f = facet(&s, 0, t);
             for (int i = 0; i < 3; i++) {
-                const double ground_m = slope_of_ground(&slope, f.p[i][0], 0);
+                const double ground_m = slope_of_ground(&slope, f.p[i][0], 14);
                 low_m = fmin(low_m, f.p[i][2]);
                 if (is_part(&f, "window") && f.part->role == HEAT_WINDOW) CHECK(f.p[i][2] > ground_m - 0.25);
                 if (is_part(&f, "door")) CHECK(fabs(ground_m - 100) < (slope > 0.3 ? 7 : 1.3));
             }
         }
-        CHECK_NEAR(low_m, fmin(100, slope_of_ground(&slope, 22, 0)) - 0.5, 1e-5);
+        CHECK_NEAR(low_m, fmin(100, slope_of_ground(&slope, 22, 14)) - 0.5, 1e-5);
         scenery_free(&s), culture_free(&c);
     }
 }
@@ -375,10 +521,15 @@ int main(void)
         cmocka_unit_test(every_roof_closes_every_outline),
         cmocka_unit_test(eaves_and_ridge_are_exact),
         cmocka_unit_test(areas_and_volumes_are_those_of_the_solids),
+        cmocka_unit_test(slabs_have_their_thickness),
         cmocka_unit_test(gables_are_closed_by_triangles),
+        cmocka_unit_test(ridges_end_in_gables),
         cmocka_unit_test(a_hipped_roof_is_the_lowest_of_its_planes),
         cmocka_unit_test(every_slope_of_a_hipped_roof_is_as_steep),
+        cmocka_unit_test(chimneys_stand_on_the_ridge),
         cmocka_unit_test(windows_stand_in_rows_and_doors_on_the_floor),
+        cmocka_unit_test(doors_open_on_drives),
+        cmocka_unit_test(damage_goes_on_by_state),
         cmocka_unit_test(buildings_on_a_slope_have_no_windows_in_the_ground),
         cmocka_unit_test(parts_have_known_names_and_materials_that_exist),
         cmocka_unit_test(a_cell_is_one_model_and_its_parts_name_their_buildings),

@@ -88,6 +88,7 @@ static void check_building(const Scenery *s, int model, const Culture *c, const 
         const Facet  f = facet(s, model, t);
         const double area = 0.5 * v3_length(f.n);
         CHECK(area > 1e-8);
+        CHECK(f.facing > 0.99 || area < 1e-4); /* flat; nodes of slivers are moved by up to 1 mm */
         double middle[3], out[3];
         for (int k = 0; k < 3; k++) middle[k] = (f.p[0][k] + f.p[1][k] + f.p[2][k]) / 3;
         if (is_part(&f, "roof") && strcmp(f.part->material, "masonry_sooted")) {
@@ -98,6 +99,7 @@ static void check_building(const Scenery *s, int model, const Culture *c, const 
                 high_m = fmax(high_m, f.p[k][2]);
             }
         }
+        for (int k = 0; k < 3 && is_part(&f, "chimney"); k++) CHECK(is_inside(p, b->corners, f.p[k]));
         if (!is_part(&f, "wall") || fabs(f.n[2]) > 1e-6 * area || side_m(p, b->corners, middle) > 1e-6) continue;
         v3_add_scaled(out, middle, 1e-4 / v3_length(f.n), f.n);
         CHECK(!is_inside(p, b->corners, out));
@@ -186,12 +188,51 @@ static void an_outline_of_4096_corners_is_made(void **state)
     }
 }
 
+/* Finite numbers that are no building's: left out, or made without trouble. */
+static void absurd_records_do_no_harm(void **state)
+{
+    (void)state;
+    static const double far[4][2] = {{1e300, 0}, {1e300, 1e200}, {-1e200, 1e200}, {0, -1e300}};
+    static const double wide[4][2] = {{0, 0}, {1e5, 0}, {1e5, 3}, {0, 3}};
+    static const double thin[4][2] = {{0, 0}, {4000, 0}, {4000, 0.002}, {0, 0.002}};
+    static const double line[3][2] = {{0, 0}, {1e5, 5}, {1e300, 0}};
+    Culture             c = {0};
+    Scenery             s = {0};
+    Building            b = house;
+    for (int k = 0; k < 4; k++) {
+        b.id = (uint64_t)k, b.roof = (uint8_t)(k % ROOF_SHAPES), b.levels = 255;
+        CHECK(culture_add_building(&c, &b, far, 4) == STATUS_OK);
+        CHECK(culture_add_building(&c, &b, wide, 4) == STATUS_OK);
+        CHECK(culture_add_building(&c, &b, thin, 4) == STATUS_OK);
+    }
+    b.ridge_m = 3e38F, b.base_m = 1e38F;
+    CHECK(culture_add_building(&c, &b, thin, 4) == STATUS_OK);
+    b = house, b.eaves_m = 1e-20F, b.ridge_m = 999, b.use = 77, b.roof = 77, b.wall_fabric = 200, b.damage = 200;
+    CHECK(culture_add_building(&c, &b, thin, 4) == STATUS_OK);
+    for (int kind = 0; kind < CULTURE_LINE_KINDS; kind++) {
+        const CultureLine l = {.id = 3, .kind = (uint8_t)kind, .width_m = kind % 2 ? 3e38F : 0};
+        CHECK(culture_add_line(&c, &l, line, 3 - kind % 2) == STATUS_OK);
+    }
+    for (int kind = 0; kind < CULTURE_POINT_KINDS; kind++)
+        for (int k = 0; k < 2; k++) {
+            const float        size = k ? 1e-30F : 3e37F;
+            const CulturePoint p = {.id = 4, .kind = (uint8_t)kind, .x_m = k, .size_m = {size, size, size}};
+            CHECK(culture_add_point(&c, &p) == STATUS_OK);
+        }
+    log_set_level(LOG_ERROR);
+    CHECK(scenery_add_buildings(&s, &c, NULL, NULL) == STATUS_OK);
+    log_set_level(LOG_INFO);
+    for (int k = 0; k < s.models; k++) CHECK(model_check(&s.model[k]) == STATUS_OK);
+    scenery_free(&s), culture_free(&c);
+}
+
 /* ---- triangles and skeletons ---------------------------------------------------------------------- */
 
 /* n - 2 positive triangles whose areas add up to the outline's: each place is covered once. */
 static void triangles_cover_an_outline(void **state)
 {
     (void)state;
+    Status status = STATUS_OK;
     for (uint64_t seed = 0; seed < 2000; seed++) {
         double    p[64][2], sum = 0;
         int       t[64][3];
@@ -199,7 +240,7 @@ static void triangles_cover_an_outline(void **state)
         const int n = random_outline(p, seed);
         add(&c, &house, (const double(*)[2])p, n); /* turned, without repeated corners */
         const double(*q)[2] = (const double(*)[2])c.corner_m;
-        CHECK(outline_triangulate(t, q, c.building[0].corners));
+        CHECK(outline_triangulate(t, &status, q, c.building[0].corners) && status == STATUS_OK);
         for (int k = 0; k < c.building[0].corners - 2; k++) {
             const double corner[3][2] = {
                 {q[t[k][0]][0], q[t[k][0]][1]}, {q[t[k][1]][0], q[t[k][1]][1]}, {q[t[k][2]][0], q[t[k][2]][1]}};
@@ -212,7 +253,7 @@ static void triangles_cover_an_outline(void **state)
     /* one that crosses itself: still n - 2 triangles, but said */
     static const double bow[4][2] = {{0, 0}, {2, 2}, {2, 0}, {0, 2}};
     int                 t[2][3];
-    CHECK(!outline_triangulate(t, bow, 4));
+    CHECK(!outline_triangulate(t, &status, bow, 4) && status == STATUS_OK);
 }
 
 /* Every node is as far from the eaves of its face as its time says. */
@@ -255,6 +296,7 @@ int main(void)
         cmocka_unit_test(any_outline_is_closed_and_sound),
         cmocka_unit_test(ten_thousand_houses_are_a_few_hundred_meshes),
         cmocka_unit_test(an_outline_of_4096_corners_is_made),
+        cmocka_unit_test(absurd_records_do_no_harm),
         cmocka_unit_test(triangles_cover_an_outline),
         cmocka_unit_test(nodes_are_as_far_from_the_eaves_as_their_time),
     };

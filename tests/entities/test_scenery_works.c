@@ -60,6 +60,7 @@ static void a_wall_has_its_volume(void **state)
         }
     }
     CHECK_NEAR(top_m2, 90 * 0.5, 1e-6);
+    assert_int_equal(s.model[0].triangle_count, 12 * 8 + 4); /* one band of twelve pieces */
     CHECK_NEAR(high_m, 51.5, 2e-5);
     CHECK(low_m < 49.7);
     scenery_free(&s);
@@ -117,17 +118,18 @@ static void a_bridge_crosses_the_valley(void **state)
     static const double p[][2] = {{2, 10}, {78, 10}};
     Scenery             s = scenery_of_line(CULTURE_BRIDGE, 6, 0, p, 2);
     double              deck_m2 = 0;
-    int                 piers = 0;
+    int                 piers = 0, rails[2] = {0};
     for (int t = 0; t < s.model[0].triangle_count; t++) {
         const Facet f = facet(&s, 0, t);
         for (int k = 0; k < 3 && is_part(&f, "deck"); k++) CHECK(f.p[k][2] < 50.01 && f.p[k][2] > 48);
         if (is_part(&f, "deck") && f.n[2] > 0.9 * v3_length(f.n)) deck_m2 += 0.5 * f.n[2];
+        if (is_part(&f, "rail")) rails[f.p[0][1] > 10]++;
         if (!is_part(&f, "base") || f.n[2] > -0.9 * v3_length(f.n)) continue;
         piers++;
         for (int k = 0; k < 3; k++) CHECK(f.p[k][2] < valley(NULL, f.p[k][0], 0) - 0.3);
     }
     CHECK_NEAR(deck_m2, 76 * 6, 1e-3);
-    CHECK(piers >= 4);
+    CHECK(piers >= 4 && rails[0] > 0 && rails[0] == rails[1]);
     scenery_free(&s);
 }
 
@@ -161,11 +163,12 @@ static void points_have_their_sizes(void **state)
             CHECK(culture_add_point(&c, &point) == STATUS_OK && c.points == 1);
             CHECK(scenery_add_buildings(&s, &c, NULL, NULL) == STATUS_OK);
             check_closed(&s);
-            double high_m = -INFINITY;
+            double high_m = -INFINITY, far_m = 0, aside_m = 0;
             bool   named = false;
             for (int t = 0; t < s.model[0].triangle_count; t++) {
                 const Facet f = facet(&s, 0, t);
                 named = named || is_part(&f, of[kind].part);
+                CHECK(f.facing > (kind == CULTURE_HEAP ? 0.9 : 0.7)); /* round ones are smooth */
                 for (int k = 0; k < 3; k++) {
                     /* along its heading, clockwise from north, and across it */
                     const double e = f.p[k][0] - 30, n = f.p[k][1] + 20, h = (double)point.heading_rad;
@@ -174,21 +177,55 @@ static void points_have_their_sizes(void **state)
                     CHECK(fabs(e * cos(h) - n * sin(h)) <
                           0.5 * (double)(of[kind].width_m + 2 * of[kind].more_m) + 1e-5);
                     CHECK(f.p[k][2] > 47 - 0.5);
+                    far_m = fmax(far_m, fabs(e * sin(h) + n * cos(h)));
+                    aside_m = fmax(aside_m, fabs(e * cos(h) - n * sin(h)));
                     high_m = fmax(high_m, f.p[k][2]);
                 }
             }
             CHECK(named);
+            /* layers of a stack lie a little out of place; a lamp or sign is wider than its post */
+            const double least = kind == CULTURE_STACK ? 0.42 : 0.48;
+            if (kind >= CULTURE_TANK) CHECK(far_m > least * (double)of[kind].length_m);
+            if (kind >= CULTURE_TANK) CHECK(aside_m > least * (double)of[kind].width_m);
             CHECK_NEAR(high_m, 47 + (double)of[kind].height_m, 0.05);
             scenery_free(&s), culture_free(&c);
         }
 }
 
+/* More parts than one model should have: several models at one place. */
+static void a_crowded_cell_is_several_models(void **state)
+{
+    (void)state;
+    enum { poles = 40000 };
+    Culture c = {0};
+    Scenery s = {0};
+    for (int k = 0; k < poles; k++) {
+        const CulturePoint p = {.id = (uint64_t)k + 1,
+                                .x_m = 0.5 * (k % 200) + 1,
+                                .y_m = 0.5 * (k / 200) + 1,
+                                .size_m = {0.2F, 0.2F, 5},
+                                .kind = CULTURE_POLE};
+        CHECK(culture_add_point(&c, &p) == STATUS_OK);
+    }
+    CHECK(scenery_add_buildings(&s, &c, NULL, NULL) == STATUS_OK);
+    assert_int_equal(s.models, 3);
+    int parts = 0;
+    for (int k = 0; k < 3; k++) {
+        for (int q = 0; q < s.model[k].part_count; q++) CHECK(s.part_of[s.part_first[k] + q] == (uint64_t)++parts);
+        CHECK(s.object[k].p_enu[0] == 64 && s.object[k].p_enu[1] == 64);
+        CHECK(k == 0 || s.object[k].id != s.object[k - 1].id);
+    }
+    assert_int_equal(parts, poles);
+    scenery_free(&s), culture_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_of_line_is_closed), cmocka_unit_test(a_wall_has_its_volume),
-        cmocka_unit_test(fences_follow_the_ground),     cmocka_unit_test(wires_sag),
-        cmocka_unit_test(a_bridge_crosses_the_valley),  cmocka_unit_test(points_have_their_sizes),
+        cmocka_unit_test(every_kind_of_line_is_closed),     cmocka_unit_test(a_wall_has_its_volume),
+        cmocka_unit_test(fences_follow_the_ground),         cmocka_unit_test(wires_sag),
+        cmocka_unit_test(a_bridge_crosses_the_valley),      cmocka_unit_test(points_have_their_sizes),
+        cmocka_unit_test(a_crowded_cell_is_several_models),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 #include "entities/catalog/catalog.h"
 #include "entities/scenery/scenery_clutter.h"
 #include "entities/traces/effect_puffs.h"
+#include "render/heat/construction.h"
 #include "render/heat/given_heat.h"
 #include "render/heat/vehicle_heat.h"
 #include "render/heat/part_table.h"
@@ -27,6 +28,8 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const char *const name[] = {"catalog.csv",
                                        "heat.csv",
+                                       "constructions.csv",
+                                       "construction_layers.csv",
                                        "effects.csv",
                                        "materials.csv",
                                        "surfaces.csv",
@@ -103,10 +106,12 @@ static void lines_of(const char *path, bool oxygen)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static char materials_path[1024], surfaces_path[1024];
+    static char materials_path[1024], surfaces_path[1024], constructions_path[1024], layers_path[1024];
     log_set_level((LogLevel)(LOG_ERROR + 1));
     if (!*materials_path && !(etc_path(materials_path, sizeof materials_path, "materials.csv") &&
-                              etc_path(surfaces_path, sizeof surfaces_path, "surfaces.csv")))
+                              etc_path(surfaces_path, sizeof surfaces_path, "surfaces.csv") &&
+                              etc_path(constructions_path, sizeof constructions_path, "constructions.csv") &&
+                              etc_path(layers_path, sizeof layers_path, "construction_layers.csv")))
         abort();
     char      path[fuzz_path_size];
     const int file = fuzz_file(path, data, size);
@@ -128,6 +133,18 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             abort();
         if (!(sheet.photons.read_e >= 0 && isfinite(sheet.photons.read_e) && sheet.photons.well_e >= 100)) abort();
         if (!(sheet.hfov_deg > 0 && sheet.hfov_deg < 180 && sheet.bits >= 8 && sheet.bits <= 16)) abort();
+    }
+    static Constructions constructions;
+    if (constructions_open(&constructions, path, layers_path) == STATUS_OK ||
+        constructions_open(&constructions, constructions_path, path) == STATUS_OK) {
+        if (!(constructions.count >= 1 && constructions.count <= construction_most)) abort();
+        if (constructions_find(&constructions, "wall", HEAT_DWELLING, "brick_red") >= constructions.count) abort();
+        for (int k = 0; k < constructions.count; k++) {
+            Column column;
+            if (column_create(&column, constructions.row[k].layer, constructions.row[k].layers, wall_first_m,
+                              wall_growth) != STATUS_OK)
+                abort();
+        }
     }
     Table table;
     if (table_open(&table, path) == STATUS_OK) {

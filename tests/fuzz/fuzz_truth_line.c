@@ -16,7 +16,8 @@ static const char seed[] =
     "\"height_px\":48,\"hfov_deg\":4,\"vfov_deg\":3,\"distortion\":[-0.1,0,0,0,0],\"ecef_from_cam\":[1,0,0,0,1,0,0,0,1],"
     "\"ground_km2\":1.5}],\"error\":{\"lwir\":{\"total\":0.1}},\"targets\":[{\"entity\":\"1:3001:12\",\"class\":\"tank\","
     "\"range_m\":1916.1,\"pixels\":12.5,\"aspect_deg\":3,\"box_px\":[4,3,6,5],\"amodal_box_px\":[3.5,3,6.5,5],"
-    "\"bands\":{\"lwir\":{\"contrast_k\":-4.0,\"snr\":-3}}}]}";
+    "\"bands\":{\"lwir\":{\"contrast_k\":-4.0,\"snr\":-3}}}],"
+    "\"clutter\":[{\"class\":\"fire\",\"id\":\"0a\",\"pixels\":0.5,\"box_px\":[1,2,2,3],\"range_m\":90.5}]}";
 
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
@@ -77,6 +78,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         const TruthTarget *t = &frame.target[i];
         if (t->class_number < 1 || !(t->range_m >= 0 && t->pixels >= 0 && t->amodal[2] >= 0 && t->amodal[3] >= 0))
             abort();
+    }
+    if (frame.clutter_count > frame.clutter_room) abort();
+    for (int i = 0; i < frame.clutter_count; i++) {
+        const TruthClutter *c = &frame.clutter[i];
+        if (c->class_number < 0 || c->class_number >= CLUTTER_CLASSES || !(c->box[2] >= 0 && c->box[3] >= 0)) abort();
     }
     double point[2];
     if (truth_frame_point(point, &frame, 10, -1) && !(isfinite(point[0]) && isfinite(point[1]))) abort();

@@ -1,5 +1,5 @@
-/* tests/fuzz/fuzz_world_note.c: any octets as the notes of a recording: a world's is within its ranges, and is what would
- * be written of it. */
+/* tests/fuzz/fuzz_world_note.c: any octets as the notes of a recording: a world's is within its ranges, and is what
+ * would be written of it. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "sensor/node/run/world_note.h"

@@ -98,8 +98,9 @@ static double stand_add_k(const GroundStand *s, double x, double y, double z, co
 
 /* A box 3.4 m wide and 2.4 m high, the sun in the south, 0.8 up over 0.6 level. Ground north of it at y is in its shade
  * while the ray from 0.02 m over it passes the near face (y = 1.7) below its top: y - 1.7 < (2.4 - 0.02) 0.6 / 0.8, y <
- * 3.485: there half of the sun's disc is hidden, 50 mm off all or none of it. It takes the cosine, 0.8, times the sun's kelvins of each interval, by the share of it that the box stood
- * there, times what relief left of the sun, times the scale. None of its sky counts here: it has no response. */
+ * 3.485: there half of the sun's disc is hidden, 50 mm off all or none of it. It takes the cosine, 0.8, times the sun's
+ * kelvins of each interval, by the share of it that the box stood there, times what relief left of the sun, times the
+ * scale. None of its sky counts here: it has no response. */
 static void a_shadow_ends_where_the_ray_passes_the_top(void **state)
 {
     (void)state;
@@ -196,8 +197,8 @@ static void the_sun_moves_between_intervals(void **state)
             const double age_s = 600 * pow((k + 0.5) / 4000, 2), share = (age_s - 300) / 600;
             double       d[3];
             for (int i = 0; i < 3; i++)
-                d[i] = now.past[1].sun_d_enu[0][i] +
-                       share * (now.past[1].sun_d_enu[1][i] - now.past[1].sun_d_enu[0][i]);
+                d[i] =
+                    now.past[1].sun_d_enu[0][i] + share * (now.past[1].sun_d_enu[1][i] - now.past[1].sun_d_enu[0][i]);
             CHECK(v3_normalize(d, d));
             if (0.02 + y * d[2] / -d[1] < 2.4) want += d[2] / 4000, hidden += 1.0 / 4000;
         }
@@ -208,8 +209,8 @@ static void the_sun_moves_between_intervals(void **state)
 }
 
 /* Sky hidden by a wall 80 m long and 2 m high, at a place 0.02 m over level ground beside its middle: twice the share
- * of a perpendicular rectangle from its corner (Hamilton & Morgan 1952): (atan(L / a) - a / c atan(L / c)) / 2 pi, c the
- * distance of its top. All of it below the wall. */
+ * of a perpendicular rectangle from its corner (Hamilton & Morgan 1952): (atan(L / a) - a / c atan(L / c)) / 2 pi, c
+ * the distance of its top. All of it below the wall. */
 static void a_wall_hides_the_sky(void **state)
 {
     (void)state;

@@ -124,9 +124,14 @@ static void a_turned_house_has_its_own_normals(void **state)
             const double n[3] = {sin(turn + k * pi_rad / 2), cos(turn + k * pi_rad / 2), 0};
             CHECK_NEAR(scenery_temp_k(now, 0, 0, here, n), alone_k(alone, hour, n), 1e-4);
         }
-        const double up[3] = {0, 0, 1}, down[3] = {0.6, 0, -0.8}, east[3] = {1, 0, 0};
+        const double up[3] = {0, 0, 1}, down[3] = {0.6, 0, -0.8}, east[3] = {1, 0, 0}, below[3] = {0, 0, -1};
         CHECK_NEAR(scenery_temp_k(now, 0, 1, here, up), alone_k(felt, hour, up), 1e-4);
-        CHECK_NEAR(scenery_temp_k(now, 0, 0, here, down), scenery_temp_k(now, 0, 0, here, east), 1e-3);
+        /* what faces down has no more sun than the wall of that side */
+        CHECK(scenery_temp_k(now, 0, 0, here, down) < scenery_temp_k(now, 0, 0, here, east) + 1e-3);
+        CHECK(scenery_temp_k(now, 0, 0, here, down) > scenery_temp_k(now, 0, 0, here, below) - 2);
+        WallSeen shade;
+        scenery_wall_seen(&shade, at(alone, hour), east, 1);
+        CHECK_NEAR(scenery_temp_k(now, 0, 0, here, below), shade.temp_k, 1e-4);
         CHECK(scenery_temp_k(now, 0, 7, here, up) == now->air_k); /* no such part */
     }
     scenery_heat_destroy(heat), scenery_heat_destroy(alone), scenery_heat_destroy(felt);
@@ -156,8 +161,9 @@ static void walls_follow_the_sun(void **state)
 }
 
 /* Normals that 33 facets have and the usual 17 have not: walls, roofs of at most 60 degrees, and what is steeper. The
- * largest errors are where sunlight grazes: 0.8 of 900 W/m2 over 22 W/(m2 K) is 33 K per unit of its cosine, whose kink
- * lies up to a quarter of two facets' 0.12 from their straight line, along both axes: 2 K. */
+ * largest errors are where sunlight grazes: 33 K per unit of its cosine of sheet, whose
+ * kink lies up to a quarter of two facets' 0.12 from their straight line, along both axes: 2 K, but for the memory of
+ * it. */
 static void facets_are_close(void **state)
 {
     (void)state;
@@ -179,8 +185,8 @@ static void facets_are_close(void **state)
         for (int i = 0; i < 3; i++) rms_k[i] = sqrt(sum[i] / count[i]);
         print_message("%s: between facets: walls %.2f K rms, %.2f K at most; roofs %.2f, %.2f; steeper %.2f, %.2f\n",
                       of[k][0], rms_k[0], worst_k[0], rms_k[1], worst_k[1], rms_k[2], worst_k[2]);
-        CHECK(rms_k[0] < 0.1 && rms_k[1] < 0.25 && rms_k[2] < 0.25);
-        CHECK(worst_k[0] < 0.6 && worst_k[1] < 2.3 && worst_k[2] < 2.3);
+        CHECK(rms_k[0] < 0.1 && rms_k[1] < 0.2 && rms_k[2] < 0.25);
+        CHECK(worst_k[0] < 0.6 && worst_k[1] < 1.4 && worst_k[2] < 1.5);
         scenery_heat_destroy(fine), scenery_heat_destroy(usual);
         arena_reset(lab.arena);
     }
@@ -237,6 +243,69 @@ static void memory_adds_up(void **state)
         scenery_heat_destroy(h);
         arena_reset(lab.arena);
     }
+}
+
+static void wood_in_the_east(ShadowStand *out, const void *user, double x_m, double y_m)
+{
+    (void)user, (void)y_m;
+    *out = x_m > 0 ? (ShadowStand){60, 0, 20, 0.1f} : (ShadowStand){.open = 1};
+}
+
+/* Three houses: in the open, deep in a dense wood, and 16 m west of its edge, whose trees of 20 m take the morning's
+ * sun and no other. */
+static void a_wood_shades_walls(void **state)
+{
+    (void)state;
+    enum { posts = 65 };
+    Elevation ground = {0};
+    CHECK(elevation_level_create(&ground, 0, &(ElevationGrid){posts, posts, -512, -512, 16, -100, 1.0 / 64}) ==
+          STATUS_OK);
+    for (int t = 0; t < ground.level[0].tiles_x * ground.level[0].tiles_y; t++)
+        ground.level[0].tile[t] = (ElevationTile){0, 0};
+    ground.level[0].plain = true;
+    for (int j = 0; j < posts; j++)
+        for (int i = 0; i < posts; i++) elevation_set_post(&ground.level[0], i, j, 6400);
+    elevation_build_pyramids(&ground);
+    SceneryHeatConfig c = lab.config;
+    House             h;
+    int               slot_of[heat_day_slots];
+    float             d_enu[3][heat_day_slots] = {{0}};
+    ShadowMap        *map;
+    c.heat.unix_s = paper_unix_s + 3600 * 14;
+    const int slots = heat_day_sun(slot_of, d_enu, &c.heat);
+    CHECK(heat_shadow_create(&map,
+                             &(ShadowOf){&ground, 8, slots, d_enu, wood_in_the_east, NULL, NULL, NULL, NULL, NULL},
+                             NULL) == STATUS_OK);
+    c.shadow = map;
+    build_house(&h, 0);
+    SceneryObject three[3] = {h.object, h.object, h.object};
+    const double  x_m[3] = {-300, 300, -24};
+    for (int k = 0; k < 3; k++) three[k].p_enu[0] = x_m[k], three[k].p_enu[2] = 100;
+    h.scenery.objects = 3, h.scenery.object = three;
+    SceneryHeat        *heat = open_heat(&h.scenery, &c), *alone = wall_alone("wall_brick_cavity", "brick_red", 17);
+    const SceneryTemps *t = at(heat, 14);
+    const double        south[3] = {0, -1, 0}, east[3] = {1, 0, 0}, up[3] = {0, 0, 1};
+    WallSeen            sun, shade;
+    scenery_heat_destroy(alone);
+    c.shadow = NULL;
+    CHECK(scenery_heat_wall(&alone, &c, constructions_named(&lab.constructions, "wall_brick_cavity"),
+                            materials_find(&lab.materials, "brick_red")) == STATUS_OK);
+    scenery_wall_seen(&sun, at(alone, 14), south, 0);
+    scenery_wall_seen(&shade, at(alone, 14), south, 1);
+    CHECK_NEAR(scenery_temp_k(t, 0, 0, here, south), sun.temp_k, 1e-3);
+    CHECK_NEAR(scenery_temp_k(t, 1, 0, here, south), shade.temp_k, 0.1);
+    CHECK(scenery_temp_k(t, 1, 1, here, up) < scenery_temp_k(t, 0, 1, here, up) - 15);
+    /* the edge: its east wall has lost the morning, its south wall little of it */
+    const double lost_east = scenery_temp_k(t, 0, 0, here, east) - scenery_temp_k(t, 2, 0, here, east),
+                 lost_south = scenery_temp_k(t, 0, 0, here, south) - scenery_temp_k(t, 2, 0, here, south);
+    print_message("at 14 h, 20 m west of a wood: an east wall has lost %.1f K, a south wall %.1f K of %.1f K\n",
+                  lost_east, lost_south, sun.temp_k - shade.temp_k);
+    CHECK(lost_east > 2 && lost_south < 0.5 * lost_east && lost_south > -0.01);
+    scenery_heat_destroy(heat), scenery_heat_destroy(alone);
+    heat_shadow_destroy(map);
+    elevation_destroy(&ground);
+    model_destroy(&h.model);
+    arena_reset(lab.arena);
 }
 
 /* Whatever frames were made before, and after going back; from the cache too. */
@@ -532,6 +601,7 @@ int main(void)
         cmocka_unit_test(facets_are_close),
         cmocka_unit_test(shade_is_worth_this),
         cmocka_unit_test(memory_adds_up),
+        cmocka_unit_test(a_wood_shades_walls),
         cmocka_unit_test(frames_decide_nothing),
         cmocka_unit_test(engines_run_stop_and_cool),
         cmocka_unit_test(fires_are_as_hot_as_their_class),

@@ -7,6 +7,7 @@
 
 #include "sensor/quality/trial_private.h"
 #include "terrain/ground/landscape.h"
+#include "tests/scenes/town.h"
 
 enum { most_entities = 24 };
 
@@ -14,6 +15,7 @@ static struct {
     LocalFrame frame;
     Landscape  landscape;
     TrialScene scene;
+    Scenery    town; /* of even scenes */
     Pool      *pool;
     Arena     *arena;
     uint64_t   skipped[SKIP_COUNT];
@@ -57,6 +59,16 @@ static void place_all(int n)
     CHECK(etc_path(catalog, sizeof catalog, "catalog.csv"));
     assert_int_equal(trial_scene_open(&stage.scene, &stage.landscape, catalog, types, 1, 0), STATUS_OK);
     stage.scene.unix_s += 3600 * dice(n, 2, 0, 9);
+    if (n % 2 == 0) {
+        const TownOf of = {.buildings = 40,
+                           .clutter = 60,
+                           .movers = 6,
+                           .middle_enu = {20, 30},
+                           .landscape = &stage.landscape,
+                           .seed = (uint64_t)n};
+        assert_int_equal(town_create(&stage.town, &of), STATUS_OK);
+        assert_int_equal(world_scenery(&stage.scene.world, &stage.town, NULL, stage.pool), STATUS_OK);
+    }
     for (int later = 0; later < 2; later++) {
         for (int k = 0; k < entities; k++) {
             const int        d = 100 + 10 * k;
@@ -86,6 +98,7 @@ static RenderRequest request_of(int n)
                              .samples = dice(n, 10, 0, 1) < 0.25 ? 2 : 1,
                              .edge_samples = dice(n, 11, 0, 1) < 0.7 ? 4 : 0,
                              .target_samples = dice(n, 12, 0, 1) < 0.7 ? 32 : 0,
+                             .t_s = 10,
                              .hidden_entity = dice(n, 13, 0, 1) < 0.3 ? 0 : -1,
                              .sky_visibility = n % 3 != 2};
     if (request.bands >> BAND_RADAR & 1)
@@ -97,8 +110,9 @@ static void check_targets(const TargetPixels *a, const TargetPixels *b, int coun
 {
     for (int k = 0; k < count; k++) {
         bool same = a[k].visible == b[k].visible && a[k].amodal == b[k].amodal && a[k].small == b[k].small &&
-                    a[k].occluded_ground == b[k].occluded_ground && a[k].occluded_entity == b[k].occluded_entity &&
-                    a[k].occluder == b[k].occluder && memcmp(a[k].box, b[k].box, sizeof a[k].box) == 0 &&
+                    a[k].occluded_ground == b[k].occluded_ground && a[k].occluded_scenery == b[k].occluded_scenery &&
+                    a[k].occluded_entity == b[k].occluded_entity && a[k].occluder == b[k].occluder &&
+                    memcmp(a[k].box, b[k].box, sizeof a[k].box) == 0 &&
                     memcmp(a[k].amodal_box, b[k].amodal_box, sizeof a[k].amodal_box) == 0 &&
                     memcmp(a[k].veiled, b[k].veiled, sizeof a[k].veiled) == 0;
         for (int p = 0; p < picture_plane_count; p++) same &= a[k].radiance[p] == b[k].radiance[p];
@@ -132,6 +146,7 @@ static inline void keeps_the_bits(int n)
                 fail_msg("%s: still skips %s", what, visibility_skip_name((Skip)j));
     }
     trial_scene_close(&stage.scene);
+    scenery_free(&stage.town);
 }
 
 /* Else scenes were compared with themselves. */

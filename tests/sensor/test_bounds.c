@@ -89,11 +89,19 @@ typedef struct Owner {
 
 enum { OF, NAME, KIND, DEFAULT, LEAST, MOST, UNIT, CHOICES, column_count };
 static const char *const column_names[] = {"of", "name", "kind", "default", "least", "most", "unit", "choices"};
-static const char *const kinds[] = {
-    [SETTING_DOUBLE] = "double", [SETTING_INT] = "int",     [SETTING_LONG] = "long",
-    [SETTING_BOOL] = "bool",     [SETTING_TEXT] = "text",   [SETTING_SWITCH] = "switch",
-    [SETTING_CHOICE] = "choice", [SETTING_WORDS] = "words", [SETTING_NUMBERS] = "numbers",
-    [SETTING_PATH] = "path",     [SETTING_PATHS] = "paths", [SETTING_NAME_OR_PATH] = "name_or_path", [SETTING_NAME_OR_PATHS] = "name_or_paths"};
+static const char *const kinds[] = {[SETTING_DOUBLE] = "double",
+                                    [SETTING_INT] = "int",
+                                    [SETTING_LONG] = "long",
+                                    [SETTING_BOOL] = "bool",
+                                    [SETTING_TEXT] = "text",
+                                    [SETTING_SWITCH] = "switch",
+                                    [SETTING_CHOICE] = "choice",
+                                    [SETTING_WORDS] = "words",
+                                    [SETTING_NUMBERS] = "numbers",
+                                    [SETTING_PATH] = "path",
+                                    [SETTING_PATHS] = "paths",
+                                    [SETTING_NAME_OR_PATH] = "name_or_path",
+                                    [SETTING_NAME_OR_PATHS] = "name_or_paths"};
 
 static int faults;
 #define FAULT(...)                                                                                                     \

@@ -92,6 +92,50 @@ static void check_annotation(const json_t *a, int image, int entity, const int b
     CHECK(at(segmentation, "size", 0) == height && at(segmentation, "size", 1) == width);
 }
 
+/* Clutter: a category of its own, with masks by its own plane, in each image; what fills no pixel is left out, and
+ * without it there is no such category. */
+static void clutter_is_a_category(void **state)
+{
+    (void)state;
+    const ClutterRecord clutter[3] = {
+        {.class_name = "cow", .id = "00000000000000aa", .pixels = 4.25, .range_m = 700, .instance = 3},
+        {.class_name = "fire", .id = "00000000000000bb", .pixels = 0.25, .range_m = 900, .instance = 8},
+        {.class_name = "rock", .id = "00000000000000cc", .pixels = 2, .range_m = 650, .instance = 9}};
+    for (int with = 0; with < 2; with++) {
+        Coco *coco;
+        CHECK(coco_open(&coco, lab.folder, "png", (CocoLimits){1, 0, 0}, "sha", 1) == STATUS_OK);
+        CHECK(coco_begin(coco) == STATUS_OK);
+        paint(".........  ..111....  ..111....  .........  .........  .........");
+        target(0, (const int[]){2, 1, 5, 3}, 0.9, 4, 5);
+        frame(5, 1);
+        CHECK(coco_frame(coco, &lab.record, lab.plane) == STATUS_OK);
+        paint(".........  .1.......  11.......  .....3...  .....3...  .........");
+        lab.record.clutter = clutter, lab.record.clutter_count = with ? 3 : 0;
+        CHECK(coco_clutter(coco, &lab.record, lab.plane) == STATUS_OK);
+        CHECK(coco_close(coco) == STATUS_OK);
+
+        json_t *all = read_file(), *found = json_object_get(all, "annotations");
+        json_t *categories = json_object_get(all, "categories");
+        CHECK(json_array_size(found) == (with ? 6 : 2));
+        json_t *last = json_array_get(categories, json_array_size(categories) - 1);
+        CHECK((strcmp(json_string_value(json_object_get(last, "name")), "clutter") == 0) == with);
+        for (size_t k = 2; with && k < 6; k++) {
+            const json_t        *a = json_array_get(found, k);
+            const ClutterRecord *of = &clutter[k < 4 ? 0 : 2];
+            static const int     box[2][4] = {{0, 1, 2, 2}, {5, 3, 1, 2}};
+            CHECK(number(a, "id") == (int)k + 1 && number(a, "image_id") == (k % 2 ? 23 : 21));
+            CHECK(number(a, "category_id") == number(last, "id") && number(last, "id") == 200);
+            CHECK(number(a, "area") == (k < 4 ? 3 : 2) && number(a, "iscrowd") == 0 && number(a, "ignore") == 0);
+            for (size_t i = 0; i < 4; i++) assert_int_equal((int)at(a, "bbox", i), box[k < 4 ? 0 : 1][i]);
+            assert_string_equal(json_string_value(json_object_get(a, "class")), of->class_name);
+            assert_string_equal(json_string_value(json_object_get(a, "clutter")), of->id);
+            CHECK(number(a, "pixels") == of->pixels && number(a, "range_m") == of->range_m);
+            CHECK(!json_object_get(a, "entity"));
+        }
+        json_decref(all);
+    }
+}
+
 static void targets_are_found_or_ignored(void **state)
 {
     (void)state;
@@ -223,6 +267,7 @@ static int close_lab(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(clutter_is_a_category),
         cmocka_unit_test(targets_are_found_or_ignored),
         cmocka_unit_test(without_limits),
         cmocka_unit_test(regions_are_masks_of_their_box),

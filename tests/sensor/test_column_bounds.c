@@ -6,6 +6,7 @@
 #include "entities/scenery/scenery_clutter.h"
 #include "entities/traces/effect_puffs.h"
 #include "pitviper_table.h"
+#include "render/heat/construction.h"
 #include "render/heat/given_heat.h"
 #include "render/heat/ground_column_private.h"
 #include "render/heat/part_table.h"
@@ -15,6 +16,7 @@
 #include "render/scattering/paths/ground_bounce.h"
 #include "render/scattering/radar_surfaces.h"
 #include "render/scattering/signatures/given_signature.h"
+#include "terrain/from_files/culture_import_private.h"
 #include "sensor/detector/preset.h"
 #include "sensor/quality/quality.h"
 #include "sensor/radar/radar_preset.h"
@@ -49,6 +51,20 @@ static Status read_ground_heat(const char *path)
 {
     static GroundKinds k;
     return ground_kinds_open(&k, path, &optical);
+}
+static Status read_constructions(const char *path)
+{
+    static Constructions c;
+    char                 layers[4096];
+    CHECK(etc_path(layers, sizeof layers, "construction_layers.csv"));
+    return constructions_open(&c, path, layers);
+}
+static Status read_layers(const char *path)
+{
+    static Constructions c;
+    char                 constructions[4096];
+    CHECK(etc_path(constructions, sizeof constructions, "constructions.csv"));
+    return constructions_open(&c, constructions, path);
 }
 static Status read_effects(const char *path)
 {
@@ -137,6 +153,23 @@ static Status read_signature(const char *path)
     given_signature_close(g);
     return status;
 }
+static Status read_culture_tags(const char *path)
+{
+    CultureRules r = {0};
+    const Status status = culture_rules_open(&r, path);
+    culture_rules_close(&r);
+    return status;
+}
+static Status read_trees(const char *path)
+{
+    const LocalFrame frame = {0};
+    Culture          c = {0};
+    CultureReport    r = {0};
+    const Status     status =
+        culture_trees_read(&c, &r, &(CultureFiles){.trees = path, .frame = &frame, .half_m = culture_farthest_m});
+    culture_free(&c);
+    return status;
+}
 static Status read_weather(const char *path)
 {
     WeatherRows  rows = {0};
@@ -155,6 +188,8 @@ static const struct Reader {
     {"heat.csv", read_roles, NULL},
     {"heat_machines.csv", read_machines, NULL},
     {"ground_heat.csv", read_ground_heat, NULL},
+    {"constructions.csv", read_constructions, NULL},
+    {"construction_layers.csv", read_layers, NULL},
     {"ground_detail.csv", read_detail, NULL},
     {"effects.csv", read_effects, NULL},
     {"quality.csv", read_quality, NULL},
@@ -169,6 +204,10 @@ static const struct Reader {
     {"radar/materials.csv", read_radar_materials, NULL},
     {"radar/oxygen_lines.csv", read_oxygen, NULL},
     {"radar/water_lines.csv", read_water, NULL},
+    {"tags_height", read_culture_tags, "@,key,value,makes,kind,width_m,surface\n@,a,*,building,,,\n"},
+    {"tags_width", read_culture_tags, "@,key,value,makes,kind,height_m,surface\n@,a,*,building,,,\n"},
+    {"trees", read_trees, "@,lat,lon,height_m\n@,47,13,5\n"},
+    {"trees_enu", read_trees, "@,x_m,y_m,height_m\n@,1,2,5\n"},
     {"weather", read_weather, "@,unix_s,air_temp_k\n@,0,280\n"},
     {"weather_air", read_weather, "@,unix_s\n@,0\n"},
     {"given_heat", read_given_heat, "@,entity,part,t_s,temp_k\n@,*,*,0,300\n"},

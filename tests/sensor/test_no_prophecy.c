@@ -11,8 +11,8 @@
 
 enum { paths = 48, reports = 40, between = 4, places = (reports - 1) * between, decoys = 3, features = 4 };
 
-/* One place of a path: surface class, distance of the nearest stem, number of low plants in its square, bend of the ground
- * over 8 m. Over tens of metres it bends as that of the exercise does, through whose reports it is led. */
+/* One place of a path: surface class, distance of the nearest stem, number of low plants in its square, bend of the
+ * ground over 8 m. Over tens of metres it bends as that of the exercise does, through whose reports it is led. */
 typedef struct Place {
     double of[features];
 } Place;
@@ -34,8 +34,8 @@ static void drive(uint64_t seed)
     const Model *model = catalog_model(catalog, catalog_find(catalog, tank, &origin, NULL));
     for (int t = 0; t < paths; t++) {
         const uint64_t n = (uint64_t)t;
-        double         x = 1800 * (random_uniform(seed, 1, 0, n) - 0.5), y = 1800 * (random_uniform(seed, 2, 0, n) - 0.5);
-        double         heading_rad = 2 * pi_rad * random_uniform(seed, 3, 0, n);
+        double x = 1800 * (random_uniform(seed, 1, 0, n) - 0.5), y = 1800 * (random_uniform(seed, 2, 0, n) - 0.5);
+        double heading_rad = 2 * pi_rad * random_uniform(seed, 3, 0, n);
         track[t] = (Track){.id = {1, 1, (uint16_t)(t + 1)}, .type = tank, .count = reports, .point = point[t]};
         for (int k = 0; k < reports; k++) {
             double       p_enu[3] = {x, y, 0}, r[9], euler[3];
@@ -81,8 +81,14 @@ static double rough_m(const Landscape *land, double x, double y)
     static const double arm_m = 8;
     double              sum = 0;
     for (int k = 0; k < 4; k++)
-        sum += elevation_height(&land->elevation, x + arm_m * (k == 0 ? 1 : k == 1 ? -1 : 0),
-                                y + arm_m * (k == 2 ? 1 : k == 3 ? -1 : 0), NULL);
+        sum += elevation_height(&land->elevation,
+                                x + arm_m * (k == 0   ? 1
+                                             : k == 1 ? -1
+                                                      : 0),
+                                y + arm_m * (k == 2   ? 1
+                                             : k == 3 ? -1
+                                                      : 0),
+                                NULL);
     return fabs(elevation_height(&land->elevation, x, y, NULL) - sum / 4);
 }
 
@@ -102,8 +108,9 @@ static void look_along(Place (*out)[places], const Landscape *land, const Woods 
     const double c = cos(angle_rad), s = sin(angle_rad);
     for (int t = 0; t < paths; t++)
         for (int k = 0; k < places; k++) {
-            const double *a = path_m[t][k / between], *b = path_m[t][k / between + 1], u = (k % between + 0.5) / between;
-            const double  x = (1 - u) * a[0] + u * b[0], y = sign * ((1 - u) * a[1] + u * b[1]);
+            const double *a = path_m[t][k / between], *b = path_m[t][k / between + 1],
+                         u = (k % between + 0.5) / between;
+            const double x = (1 - u) * a[0] + u * b[0], y = sign * ((1 - u) * a[1] + u * b[1]);
             look(&out[t][k], land, woods, c * x - s * y, s * x + c * y);
         }
 }

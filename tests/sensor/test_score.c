@@ -88,6 +88,37 @@ static void test_rates(void **state)
     score_report_free(&report);
 }
 
+/* Three false alarms lie on clutter: one on a cow before a lorry, one beside a fire by half a pixel, one on what this
+ * program knows no class of; one lies on nothing, and what names the target counts as right, clutter or not. */
+static void test_on_clutter(void **state)
+{
+    (void)state;
+    ScoreFolder f;
+    ScoreReport report;
+    score_folder_open(&f);
+    score_frame(&f, 0, lwir);
+    score_target(&f, "", 1, "tank", large_box, 600);
+    fputs(
+        "],\"clutter\":[{\"class\":\"lorry\",\"box_px\":[20,20,60,40]},{\"class\":\"animal\",\"box_px\":[30,25,36,30]},"
+        "{\"class\":\"fire\",\"box_px\":[400,100,402,102]},{\"class\":\"yeti\",\"box_px\":[500,100,520,120]},"
+        "{\"class\":\"van\",\"box_px\":[300,200,340,220]}]}\n",
+        f.truth);
+    score_frame(&f, 1, lwir); /* as products without clutter are */
+    score_frame_end(&f);
+    fputs("{\"frame\":0,\"class\":\"tank\",\"box_px\":[300,200,340,220],\"score\":0.9}\n"
+          "{\"frame\":0,\"class\":\"tank\",\"box_px\":[31,26,35,29],\"score\":0.8}\n"
+          "{\"frame\":0,\"class\":\"tank\",\"box_px\":[402,100,403,102],\"score\":0.7}\n"
+          "{\"frame\":0,\"class\":\"tank\",\"box_px\":[505,105,515,115],\"score\":0.6}\n"
+          "{\"frame\":0,\"class\":\"tank\",\"box_px\":[600,400,610,410],\"score\":0.6}\n"
+          "{\"frame\":1,\"class\":\"tank\",\"box_px\":[31,26,35,29],\"score\":0.6}\n",
+          f.answers);
+    const ScoreRecogniser *r = scored(&report, &f, NULL);
+    CHECK(r->total.found == 1 && r->total.false_alarms == 5);
+    for (int k = CLUTTER_NONE + 1; k < CLUTTER_CLASSES; k++)
+        CHECK(r->on_clutter[k] == (k == CLUTTER_ANIMAL || k == CLUTTER_FIRE));
+    score_report_free(&report);
+}
+
 /* Answers of score 0.9 right, 0.8 wrong, 0.7 right, of two targets: precision 1 up to recall 1/2, then 2/3: of 101
  * recalls 51 and 50. The boxes are exact, so that every IoU has this. */
 static void test_average_precision(void **state)
@@ -302,10 +333,15 @@ static void test_lines_of_sight(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rates),          cmocka_unit_test(test_average_precision),
-        cmocka_unit_test(test_edges),          cmocka_unit_test(test_ignored),
-        cmocka_unit_test(test_equally_near),   cmocka_unit_test(test_ages),
-        cmocka_unit_test(test_rules),          cmocka_unit_test(test_curve),
+        cmocka_unit_test(test_rates),
+        cmocka_unit_test(test_on_clutter),
+        cmocka_unit_test(test_average_precision),
+        cmocka_unit_test(test_edges),
+        cmocka_unit_test(test_ignored),
+        cmocka_unit_test(test_equally_near),
+        cmocka_unit_test(test_ages),
+        cmocka_unit_test(test_rules),
+        cmocka_unit_test(test_curve),
         cmocka_unit_test(test_lines_of_sight),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

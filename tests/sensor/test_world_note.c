@@ -3,10 +3,7 @@
 
 #include "sensor/node/run/world_note.h"
 
-static double drawn(uint64_t k, uint32_t of, double most)
-{
-    return most * (2 * random_uniform(7, of, 0, k) - 1);
-}
+static double drawn(uint64_t k, uint32_t of, double most) { return most * (2 * random_uniform(7, of, 0, k) - 1); }
 
 static WorldNote some(uint64_t k)
 {
@@ -42,7 +39,10 @@ static void other_lines_are_none(void **state)
 {
     (void)state;
     static const char *const other[] = {
-        "", "\n\n", "pitviper: world until", "pitviper: world until 0x1p+30 at 0x0p+0 0x0p+0 0x0p+0 square 0x0p+0 0x0p+0",
+        "",
+        "\n\n",
+        "pitviper: world until",
+        "pitviper: world until 0x1p+30 at 0x0p+0 0x0p+0 0x0p+0 square 0x0p+0 0x0p+0",
         "pitviper: world until nan at 0x0p+0 0x0p+0 0x0p+0 square 0x0p+0 0x0p+0 0x1p+10",
         "pitviper: world until 0x1p+30 at 0x1p+1 0x0p+0 0x0p+0 square 0x0p+0 0x0p+0 0x1p+10",    /* beyond a pole */
         "pitviper: world until 0x1p+30 at 0x0p+0 0x0p+0 0x0p+0 square 0x0p+0 0x0p+0 0x1p+20",    /* too wide */

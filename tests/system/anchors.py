@@ -147,6 +147,9 @@ for (model,), (kw, kj, block, gas, cabin) in columns("heat_machines.csv", "model
     expect(290 < block < 380 and (kw == 0) == (gas == 300) and (kw == 0 or gas > block + 200),
            f"heat_machines.csv: {model}: engine_k {block}, exhaust_k {gas}")
     expect(kw == 0 or (1.5 * kw < kj < 6 * kw and cabin < kj), f"heat_machines.csv: {model}: {kw} kW of engine hold {kj} kJ/K")
+layers = {name: float(w_mk or 0) for (name, w_mk) in ((r[0], r[1]) for r in table("construction_layers.csv")[1:])}
+falling("construction_layers.csv", "w_mk", [(n, layers[n]) for n in (
+    "aluminium", "steel", "concrete", "limestone", "brick", "block_aerated", "softwood", "mineral_wool", "pir")])
 rough = columns("ground_heat.csv", "surface", "roughness_m", "porosity", "saturation")
 falling("ground_heat.csv", "roughness_m", [(s, rough[s,][0]) for s in ("forest_conifer", "scrub", "grass", "road", "water")])
 for row in table("woods.csv")[1:]:

@@ -90,7 +90,7 @@ with tempfile.TemporaryDirectory() as folder:
         instance[entity > 0], part[entity > 0] = 0, 1
         write_exr(out / f'frames/lwir/{number:06d}.exr', {'Y': lwir})
         write_exr(out / f'frames/truth/{number:06d}.exr', {'entity': entity, 'part': part, 'instance': instance, 'material': zero + 1})
-        lines.append(json.dumps({'frame': number, 'targets': [], 'clutter': [{'object': 5, 'class': 'car'}],
+        lines.append(json.dumps({'frame': number, 'targets': [], 'clutter': [{'instance': 5, 'class': 'car'}],
                                  'sensors': [{'width_px': 80, 'hfov_deg': 8}]}))
     (out / 'truth.jsonl').write_text('\n'.join(lines))
     (out / 'run.json').write_text('{}')

@@ -2,8 +2,8 @@
 """What a recogniser could learn of where targets stand: over a sweep of a scenario with publish.planes entity,instance.
     hiding_judge.py about OUT      shares of plants within 6 px about targets and in frames; targets at the exact centre
     hiding_judge.py planned OUT    occlusion of the aim, planned by the scenario against truth, in nine bins of 0.1 .. 0.9
-    hiding_judge.py context OUT    area under the curve of a classifier that sees the surroundings alone, the target blanked, with
-                                   the vehicle there and without it (publish.pairs: all)
+    hiding_judge.py context OUT    area under the curve of a classifier that sees the surroundings alone, the target blanked, of
+                                   places with a vehicle and of others with as many plants (publish.pairs: all)
 Prints names and values, one a line. Needs numpy and OpenEXR."""
 import csv
 import json
@@ -122,19 +122,40 @@ def features(image, box):
             numpy.log((step[near].mean() + 1e-18) / (step[far].mean() + 1e-18))]
 
 
+def plants_about(plant, box):
+    """Share of plants in both rings about a box, and in the box."""
+    near, far = rings(plant.shape, box)
+    return plant[near | far].mean()
+
+
 def context(out):
-    """The same places with their vehicles and without (publish.pairs: all), the vehicles' boxes blanked: logistic regression on
-    what is around, of places in turn learnt and judged."""
+    """Places where vehicles hide, and others of the same image with as many plants about them: as they are without any vehicle
+    (publish.pairs: all), a box of the vehicle's size blanked. Logistic regression on what is around, of places in turn learnt and
+    judged."""
     rows, labels, groups = [], [], []
+    draw = numpy.random.default_rng(1)
     for number, (variant, frame, folder) in enumerate(frames(out)):
         band = variant['settings']['sensor.bands'].split(',')[0]
-        pair = [plane(at, band, frame['frame'], 'Y').astype(float) for at in (folder, folder / 'pairs/background')]
+        image = plane(folder / 'pairs/background', band, frame['frame'], 'Y').astype(float)
+        plant = plane(folder / 'pairs/background', 'truth', frame['frame'], 'instance') > 0
+        occupied = plane(folder, 'truth', frame['frame'], 'entity') > 0
         for t in frame['targets']:
-            both = [features(image, t['amodal_box_px']) for image in pair]
-            if t['pixels'] > 0 and None not in both:
-                rows += both
-                labels += [1, 0]
-                groups += [number] * 2
+            box = numpy.array(t['amodal_box_px'])
+            here = features(image, box)
+            if t['pixels'] <= 0 or here is None:
+                continue
+            want, others = plants_about(plant, box), []
+            for _ in range(200):
+                moved = box + numpy.tile(draw.uniform((-image.shape[1], -image.shape[0]), image.shape[::-1]), 2).round()
+                there = features(image, moved)
+                if there is None or occupied[numpy.logical_or(*rings(image.shape, moved))].any():
+                    continue
+                others.append((abs(plants_about(plant, moved) - want), there))
+            others = [there for off, there in sorted(others, key=lambda o: o[0])[:5] if off <= 0.15]
+            if others:
+                rows += [here] + others
+                labels += [1] + [0] * len(others)
+                groups += [number] * (1 + len(others))
     rows, labels, groups = numpy.array(rows), numpy.array(labels), numpy.array(groups)
     score = numpy.zeros(len(labels))
     for fold in range(5):
@@ -144,14 +165,19 @@ def context(out):
         w = numpy.zeros(x.shape[1])
         for _ in range(400):
             p = 1 / (1 + numpy.exp(-x[learn] @ w))
-            w += 0.5 * (x[learn].T @ (labels[learn] - p) / learn.sum() - 0.01 * w)
+            even = numpy.where(labels[learn] == 1, (labels[learn] == 0).sum() / max((labels[learn] == 1).sum(), 1), 1)
+            w += 0.5 * (x[learn].T @ (even * (labels[learn] - p)) / even.sum() - 0.01 * w)
         score[judged] = x[judged] @ w
     rank = numpy.empty(len(score))
     rank[numpy.argsort(score, kind='stable')] = numpy.arange(1, len(score) + 1)
     ones = labels == 1
     area = (rank[ones].sum() - ones.sum() * (ones.sum() + 1) / 2) / (ones.sum() * (~ones).sum())
     print(f'places {ones.sum()}')
+    # Hanley and McNeil, Radiology 143 (1982)
+    q1, q2, n, m = area / (2 - area), 2 * area ** 2 / (1 + area), ones.sum(), (~ones).sum()
+    error = numpy.sqrt((area * (1 - area) + (n - 1) * (q1 - area ** 2) + (m - 1) * (q2 - area ** 2)) / (n * m))
     print(f'auc {area:.3f}')
+    print(f'auc_error {error:.3f}')
 
 
 {'about': about, 'planned': planned, 'context': context}[sys.argv[1]](pathlib.Path(sys.argv[2]))

@@ -9,7 +9,7 @@ cat >"$tmp/hide.yaml" <<'Y'
 duration_s: 6
 seed: 1
 place: {lat_deg: 50.1, lon_deg: 8.6, height_m: 120}
-ground: {invented: true, spacing_m: 30}
+ground: {planted: true, spacing_m: 30}
 vehicles:
   - {name: Tank, id: 11, type: 1.1.222.1.1.1.0, hide: tree-line, hide_m: 400, occlusion: 0.6, route_m: [[-400, -300]]}
   - {name: Truck, id: 21, type: 1.1.222.7.1.0.0, hide: hedge, hide_m: 400, occlusion: 0.3, route_m: [[300, -300]]}
@@ -53,14 +53,14 @@ cat >"$tmp/axes.yaml" <<'Y'
 mode: zip
 axes:
   seed: [1, 1, 2]
-  scenario.vehicles.Tank.type: [tank, truck, tank]
+  scenario.vehicles.Tank.type: [1.1.222.1.1.1.0, 1.1.222.7.1.0.0, 1.1.222.1.1.1.0]
   scenario.seed: [1, 2, 1]
   exercise.aim: 1:3001:11
   exercise.host: observer
 Y
 replay "$tmp/hide.yaml" "$tmp/s" "${looks[@]}" --sweep "$tmp/axes.yaml" --verbose
 check "a sweep of a scenario" [ "$code $(grep -c '"status":"made"' "$tmp/s/manifest.jsonl")" = '0 3' ]
-check "rows say what each was" grep -q '"seed":"1","scenario.vehicles.Tank.type":"truck","scenario.seed":"2"' "$tmp/s/manifest.jsonl"
+check "rows say what each was" grep -q '"seed":"1","scenario.vehicles.Tank.type":"1.1.222.7.1.0.0","scenario.seed":"2"' "$tmp/s/manifest.jsonl"
 check "each has its exercise" [ "$(grep -oE '"exercise":"e[0-9a-f]{10}"' "$tmp/s/manifest.jsonl" | sort -u | wc -l)" = 3 ]
 check "recorded, with its places" [ "$(find "$tmp/s/exercises" -name 'e*.pcapng' | wc -l) $(find "$tmp/s/exercises" -name 'e*.csv' | wc -l)" = '3 3' ]
 variant() { grep -oE '"folder":"v[0-9a-f]{10}"' "$tmp/s/manifest.jsonl" | cut -d'"' -f4 | sed -n "$1p"; }
@@ -88,11 +88,11 @@ wrong() { # WORDS LOG AXES
 wrong 'scenario.seed: is of a scenario, and a recording is replayed' "$tmp/hide.pcap" 'axes: {scenario.seed: [1, 2]}'
 wrong "there are no vehicles with name: 'Tnak'" "$tmp/hide.yaml" 'axes: {scenario.vehicles.Tnak.type: [tank]}'
 wrong "seed: '-1'" "$tmp/hide.yaml" 'axes: {scenario.seed: [-1]}'
-wrong 'scenario.sede' "$tmp/hide.yaml" 'axes: {scenario.sede: [1]}'
+wrong 'no such key: sede' "$tmp/hide.yaml" 'axes: {scenario.sede: [1]}'
 wrong 'is not a number' "$tmp/hide.yaml" '{mode: random, count: 2, axes: {scenario.vehicles.Tank.type: {from: 1, to: 2}}}'
 wrong 'terrain.place is that of the scenario' "$tmp/hide.yaml" 'axes: {terrain.place: ["1,2,3"]}'
 wrong "terrain.place: '91,0,0' is not latitude" "$tmp/hide.pcap" 'axes: {terrain.place: ["91,0,0"]}'
 run exercise demo -o "$tmp/demo.pcap" --places "$tmp/demo.csv" --overwrite
 check "nothing hides without a ground" [ "$code" = 1 ]
-check "nothing hides without a ground: said" complained 'needs ground.invented'
+check "nothing hides without a ground: said" complained 'needs ground.planted'
 finish

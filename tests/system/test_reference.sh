@@ -92,7 +92,7 @@ run replay "$tmp/two.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 
     --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
-run replay "$tmp/two.pcap" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml" \
+run replay "$tmp/two.yaml" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml" \
     --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000
 python3 tests/system/score_folder.py "$tmp/score" --frames 30
 run score "$tmp/score" --max-age 20 --min-visible 0.5

@@ -56,7 +56,7 @@ def cells_of(text, layers):
     for layer in text.split(";"):
         name, mm = layer.split()
         row, thick = layers[name], float(mm) / 1000
-        w_mk = float(row["w_mk"]) or thick / float(row["m2k_w"])
+        w_mk = float(row["w_mk"] or 0) or thick / float(row["m2k_w"])
         # from both faces inwards: 1 mm, then ever larger
         widths, left, width = [], thick / 2, 0.001
         while left > 1e-12:
@@ -77,7 +77,7 @@ class Face:
     def __init__(self, row, layers, up, start_k):
         size, k, c = cells_of(row["layers"], layers)
         self.inside, self.up = row["inside"], up
-        self.film = float(row["inside_w_m2k"])
+        self.film = float(row["inside_w_m2k"] or 0)
         n = len(size)
         g = 1 / (0.5 * size[1:] / k[1:] + 0.5 * size[:-1] / k[:-1])
         self.half = 0.5 * size[0] / k[0]

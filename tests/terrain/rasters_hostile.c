@@ -67,6 +67,28 @@ static void answer(WireChannel *c)
         c->reply.count = 1;
         if (chance(3) == 0) spoil(c->data, 96);
         if (chance(6) == 0) memset(c->data, 0xff, wire_data_octets);
+    } else if (q->ask == WIRE_VECTORS) {
+        const WireVectors v = {{{13, 47, 14, 48}}, 1, 1};
+        memcpy(c->data, &v, sizeof v);
+        if (chance(3) == 0) spoil(c->data, sizeof v);
+        if (chance(6) == 0) memcpy(c->data + 8 * chance(4), &bad[chance(5)], 8);
+    } else if (q->ask == WIRE_FEATURES) {
+        static bool told; /* what there is, which a sound reader says once */
+        size_t      at = 0;
+        c->reply.count = told && chance(6) ? 0 : (int32_t)chance(5);
+        told = true;
+        for (int n = 0; n < 4; n++) {
+            const WireFeature f = {
+                .octets = sizeof f + 48 + 24, .shape = WIRE_POLYGON, .corners = 3, .tags = 1, .texts = 20};
+            const double place[6] = {0.2269, 0.8204, 0.22691, 0.8204, 0.22691, 0.82041};
+            memcpy(c->data + at, &f, sizeof f);
+            memcpy(c->data + at + sizeof f, place, sizeof place);
+            memcpy(c->data + at + sizeof f + 48, "building\0apartments", 20);
+            at += f.octets;
+        }
+        if (chance(3) == 0) spoil(c->data, at);
+        if (chance(6) == 0) memcpy(c->data + 40 + 8 * chance(6), &bad[chance(5)], 8);
+        if (chance(20) == 0) memset(c->data, 0xff, wire_data_octets);
     } else if (q->ask >= WIRE_PX_FROM_EARTH) {
         for (size_t n = 0; n < 4096; n++) c->data[n] = (uint8_t)chance(256);
         c->reply.uniform = (int32_t)chance(2);

@@ -48,7 +48,8 @@ static void what_cannot_be_is_left_out(void **state)
     static const double touch[][2] = {{0, 0}, {10, 0}, {10, 10}, {5, 0}, {0, 10}};
     double              square[][2] = {{0, 0}, {9, 0}, {9, 9}, {0, 9}};
     CHECK(take_outline(&c, bow, 4) == 0 && take_outline(&c, small, 3) == 0 && take_outline(&c, touch, 5) == 0);
-    CHECK(take_outline(&c, (const double(*)[2])square, 2) == 0 && take_outline(&c, (const double(*)[2])square, 5000) == 0);
+    CHECK(take_outline(&c, (const double(*)[2])square, 2) == 0 &&
+          take_outline(&c, (const double(*)[2])square, 5000) == 0);
     static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300, 1.1e6};
     for (int k = 0; k < 5; k++) {
         square[2][1] = bad[k];
@@ -208,18 +209,18 @@ static void scatter(Culture *c, double wide_m)
 {
     for (int n = 0; n < 150; n++) {
         const double x = wide_m * (unit() - 0.5), y = wide_m * (unit() - 0.5), a = 6 * unit(), l = 5 + 40 * unit();
-        const double w = 4 + 10 * unit(), p[6][2] = {{x, y},
-                                                     {x + l * cos(a), y + l * sin(a)},
-                                                     {x + l * cos(a) - w * sin(a), y + l * sin(a) + w * cos(a)},
-                                                     {x + 0.5 * l * cos(a) - w * sin(a), y + 0.5 * l * sin(a) + w * cos(a)},
-                                                     {x + 0.5 * l * cos(a) - 3 * w * sin(a), y + 0.5 * l * sin(a) + 3 * w * cos(a)},
-                                                     {x - 3 * w * sin(a), y + 3 * w * cos(a)}};
+        const double w = 4 + 10 * unit(),
+                     p[6][2] = {{x, y},
+                                {x + l * cos(a), y + l * sin(a)},
+                                {x + l * cos(a) - w * sin(a), y + l * sin(a) + w * cos(a)},
+                                {x + 0.5 * l * cos(a) - w * sin(a), y + 0.5 * l * sin(a) + w * cos(a)},
+                                {x + 0.5 * l * cos(a) - 3 * w * sin(a), y + 0.5 * l * sin(a) + 3 * w * cos(a)},
+                                {x - 3 * w * sin(a), y + 3 * w * cos(a)}};
         CHECK(take_outline(c, p, 6) == 1);
     }
     for (int n = 0; n < 60; n++) {
         double p[8][2];
-        for (int k = 0; k < 8; k++)
-            p[k][0] = wide_m * 1.2 * (unit() - 0.5), p[k][1] = wide_m * 1.2 * (unit() - 0.5);
+        for (int k = 0; k < 8; k++) p[k][0] = wide_m * 1.2 * (unit() - 0.5), p[k][1] = wide_m * 1.2 * (unit() - 0.5);
         const CultureLine l = {.width_m = (float)(n % 5 ? 8 * unit() : 90 * unit()),
                                .kind = (uint8_t)(n % CULTURE_LINE_KINDS),
                                .surface = (uint8_t)(n % 3 ? 14 + n % 2 : 0)};
@@ -261,7 +262,8 @@ static void lookups_are_those_of_every_record(void **state)
             }
             for (int k = 0; k < c.points; k++) {
                 const CulturePoint *q = &c.point[k];
-                any |= hypot(q->x_m - p[0], q->y_m - p[1]) <= more_m + 0.5 * hypot((double)q->size_m[0], (double)q->size_m[1]);
+                any |= hypot(q->x_m - p[0], q->y_m - p[1]) <=
+                       more_m + 0.5 * hypot((double)q->size_m[0], (double)q->size_m[1]);
             }
             CHECK(culture_building_at(&c, p[0], p[1], more_m) == building);
             CHECK(culture_is_near(&c, p[0], p[1], more_m) == any);
@@ -284,7 +286,8 @@ static void memory_of_the_index_is_bounded(void **state)
     (void)state;
     enum { lines = 3000 };
     Culture c = {0};
-    for (int n = 0; n < lines; n++) { /* from end to end of all that may be, as wide as may be: 60 million cells of 32 m */
+    for (int n = 0; n < lines;
+         n++) { /* from end to end of all that may be, as wide as may be: 60 million cells of 32 m */
         const double      p[2][2] = {{-1e6, 2e6 * unit() - 1e6}, {1e6, 2e6 * unit() - 1e6}};
         const CultureLine l = {.width_m = 1000, .surface = 14};
         assert_int_equal(culture_add_line(&c, &l, p, 2), STATUS_OK);
@@ -311,7 +314,7 @@ static void a_key_follows_from_every_record(void **state)
     static const double p[4][2] = {{0, 0}, {9, 0}, {9, 9}, {0, 9}};
     char                name[6][sha256_text_size];
     for (int k = 0; k < 6; k++) {
-        Culture c = {0};
+        Culture  c = {0};
         Building b = plain;
         if (k == 1) b.ridge_m = 9;
         assert_int_equal(culture_add_building(&c, &b, p, 4), STATUS_OK);

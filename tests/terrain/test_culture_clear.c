@@ -1,5 +1,5 @@
 /* Invented culture keeps clear of what was reported: vehicles, their paths, the sight lines of shots; and plants keep
- * clear of it. labels: physics */
+ * clear of it. */
 #include "tests/terrain/culture_lab.h"
 
 #include "terrain/woods/woods.h"

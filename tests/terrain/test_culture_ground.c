@@ -66,7 +66,8 @@ static void lines_are_surfaces(void **state)
     Culture        c = {0};
     (void)state;
     for (int k = 0; k < places; k++) {
-        x_m[k] = 1200 * (random_uniform(9, 1, 0, (uint64_t)k) - 0.5), y_m[k] = 1200 * (random_uniform(9, 2, 0, (uint64_t)k) - 0.5);
+        x_m[k] = 1200 * (random_uniform(9, 1, 0, (uint64_t)k) - 0.5),
+        y_m[k] = 1200 * (random_uniform(9, 2, 0, (uint64_t)k) - 0.5);
         if (k % 8 == 0) { /* on the path, which chance seldom meets */
             const double t = random_uniform(9, 3, 0, (uint64_t)k);
             x_m[k] = -300 + 650 * t + 0.2 * random_uniform(9, 4, 0, (uint64_t)k), y_m[k] = 400 - 850 * t;

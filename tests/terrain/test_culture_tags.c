@@ -14,14 +14,44 @@ static void lengths(void **state)
     static const struct {
         const char *text;
         double      m; /* NAN: none */
-    } some[] = {{"12", 12},         {"12 m", 12},           {"12m", 12},      {"12.5", 12.5},      {"3,5", 3.5},
-                {" 7 metres ", 7},  {"39 ft", 11.8872},     {"39'6\"", 12.0396}, {"39' 6\"", 12.0396}, {"39'", 11.8872},
-                {"5 ft 6 in", 1.6764}, {"120 cm", 1.2},     {"6\"", 0.1524},  {"~12", 12},         {"12.", 12},
-                {"1.2e1", 12},      {"0", 0},               {"-3", -3},       {"9999", 9999},      {"100 feet", 30.48},
-                {"0.5 km", 500},    {"12 M", 12},           {"5'11''", 1.8034},
-                {"", NAN},          {"tall", NAN},          {"12-14", NAN},   {"10;12", NAN},      {"m", NAN},
-                {"12 bananas", NAN}, {"1e999", NAN},        {"nan", NAN},     {"inf", NAN},        {"0x12", NAN},
-                {"39'6'", NAN},     {"5 ft 6 m", NAN},      {"--3", NAN},     {"3,5,7", NAN},      {"1e", NAN}};
+    } some[] = {{"12", 12},
+                {"12 m", 12},
+                {"12m", 12},
+                {"12.5", 12.5},
+                {"3,5", 3.5},
+                {" 7 metres ", 7},
+                {"39 ft", 11.8872},
+                {"39'6\"", 12.0396},
+                {"39' 6\"", 12.0396},
+                {"39'", 11.8872},
+                {"5 ft 6 in", 1.6764},
+                {"120 cm", 1.2},
+                {"6\"", 0.1524},
+                {"~12", 12},
+                {"12.", 12},
+                {"1.2e1", 12},
+                {"0", 0},
+                {"-3", -3},
+                {"9999", 9999},
+                {"100 feet", 30.48},
+                {"0.5 km", 500},
+                {"12 M", 12},
+                {"5'11''", 1.8034},
+                {"", NAN},
+                {"tall", NAN},
+                {"12-14", NAN},
+                {"10;12", NAN},
+                {"m", NAN},
+                {"12 bananas", NAN},
+                {"1e999", NAN},
+                {"nan", NAN},
+                {"inf", NAN},
+                {"0x12", NAN},
+                {"39'6'", NAN},
+                {"5 ft 6 m", NAN},
+                {"--3", NAN},
+                {"3,5,7", NAN},
+                {"1e", NAN}};
     for (size_t k = 0; k < sizeof some / sizeof *some; k++) {
         double     m = 77;
         const bool got = culture_metres(&m, some[k].text);
@@ -42,8 +72,8 @@ static void numbers_and_directions(void **state)
     static const struct {
         const char *text;
         double      deg;
-    } some[] = {{"135", 135}, {"NW", 315}, {"n", 0}, {"SSE", 157.5}, {"west", 270}, {"90\xc2\xb0", 90}, {"-90", 270},
-                {"up", NAN}, {"400", NAN}, {"", NAN}, {"12 deg", NAN}};
+    } some[] = {{"135", 135}, {"NW", 315}, {"n", 0},     {"SSE", 157.5}, {"west", 270},  {"90\xc2\xb0", 90},
+                {"-90", 270}, {"up", NAN}, {"400", NAN}, {"", NAN},      {"12 deg", NAN}};
     for (size_t k = 0; k < sizeof some / sizeof *some; k++) {
         const bool got = culture_direction(&x, some[k].text);
         if (got != !isnan(some[k].deg)) fail_msg("'%s': %d", some[k].text, got);
@@ -84,7 +114,7 @@ static CultureRules rules;
 static int open_rules(void **state)
 {
     (void)state;
-    return culture_rules_open(&rules) != STATUS_OK;
+    return culture_rules_open(&rules, NULL) != STATUS_OK;
 }
 
 static int close_rules(void **state)
@@ -166,7 +196,8 @@ static void what_a_feature_is(void **state)
 static void what_a_feature_says(void **state)
 {
     (void)state;
-    CultureFacts f = facts_of("building=church|height=39 ft|roof:height=2|roof:levels=1|building:levels=3|min_height=1");
+    CultureFacts f =
+        facts_of("building=church|height=39 ft|roof:height=2|roof:levels=1|building:levels=3|min_height=1");
     CHECK_NEAR(f.height_m, 11.8872, 1e-9);
     CHECK(f.roof_height_m == 2 && f.roof_levels == 1 && f.levels == 3 && f.part_height_m == 1 && f.unread == 0);
     f = facts_of("amenity=place_of_worship|building=yes|roof:shape=Mansard|roof:orientation=across|roof:material=slate|"
@@ -187,7 +218,8 @@ static void what_a_feature_says(void **state)
     CHECK(facts_of("levels=2").levels == 2 && facts_of("floors=5").levels == 5);
     f = facts_of("highway=residential|width=4.5|lanes=2|surface=gravel|bridge=yes|tunnel=F|osm_id=77");
     CHECK(f.width_m == 4.5 && f.lanes == 2 && f.ground == SURFACE_TRACK && f.bridge && !f.hidden && f.id != 0);
-    CHECK(facts_of("tunnel=culvert").hidden && facts_of("location=underground").hidden && !facts_of("bridge=no").bridge);
+    CHECK(facts_of("tunnel=culvert").hidden && facts_of("location=underground").hidden &&
+          !facts_of("bridge=no").bridge);
     f = facts_of("natural=tree|leaf_type=needleleaved|marked=yes");
     CHECK(f.plant == PLANT_PINE && f.marked);
     CHECK(facts_of("natural=tree|species=Quercus rubra").plant == PLANT_RED_OAK);

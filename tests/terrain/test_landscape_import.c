@@ -6,6 +6,7 @@
 #include "tests/check.h"
 
 #include "terrain/earth/geoid.h"
+#include "terrain/culture/culture_ground.h"
 #include "terrain/from_files/elevation_import.h"
 
 enum { cells = 64 };
@@ -346,11 +347,53 @@ static int remove_sheets(void **state)
     return system(command);
 }
 
+/* A road and a river of culture lie over the classes of files, as wide as they are; a building does not. */
+static void culture_lies_on_them(void **state)
+{
+    (void)state;
+    static const double road[2][2] = {{-250, -200}, {250, -200}}, river[2][2] = {{100, -250}, {100, 250}};
+    static const double house[4][2] = {{-150, 100}, {-130, 100}, {-130, 120}, {-150, 120}};
+    const LocalFrame    frame = centre_frame();
+    const SurfaceClass  bare[4] = {SURFACE_FOREST_BROADLEAF, SURFACE_GRASS, SURFACE_BUILT, SURFACE_WATER};
+    Landscape           land = {0};
+    LandscapeReport     report;
+    Culture             c = {0};
+    char                elevation[64], cover[64];
+    write_sheet(elevation, "level", level_ground);
+    write_sheet(cover, "cover", quadrants);
+    const LandscapeFiles files = files_of(elevation, cover, "");
+    assert_int_equal(landscape_import(&land, &report, &files, &frame, NULL, 0), STATUS_OK);
+    CHECK(culture_add_line(&c, &(CultureLine){.width_m = 8, .surface = SURFACE_ROAD}, road, 2) == STATUS_OK &&
+          culture_add_line(&c, &(CultureLine){.width_m = 12, .surface = SURFACE_WATER}, river, 2) == STATUS_OK &&
+          culture_add_building(&c, &(Building){.eaves_m = 4, .ridge_m = 7}, house, 4) == STATUS_OK);
+    assert_int_equal(culture_index(&c), STATUS_OK);
+    culture_lay(&land, &c);
+    for (double x = -240; x < 80; x += 7) {
+        CHECK(landscape_surface(&land, x, -196.1) == SURFACE_ROAD &&
+              landscape_surface(&land, x, -203.9) == SURFACE_ROAD);
+        if (fabs(x) < 60) continue;
+        const SurfaceClass beside = x < 0 ? SURFACE_BUILT : SURFACE_WATER;
+        CHECK(landscape_surface(&land, x, -195.9) == beside && landscape_surface(&land, x, -204.1) == beside);
+    }
+    for (double y = 60; y < 240; y += 7) {
+        CHECK(landscape_surface(&land, 94.1, y) == SURFACE_WATER &&
+              landscape_surface(&land, 105.9, y) == SURFACE_WATER);
+        CHECK(landscape_surface(&land, 93.9, y) == SURFACE_GRASS &&
+              landscape_surface(&land, 106.1, y) == SURFACE_GRASS);
+    }
+    CHECK(landscape_surface(&land, -140, 110) == SURFACE_FOREST_BROADLEAF);
+    culture_lay(&land, NULL);
+    check_quadrants(&land, bare);
+    landscape_destroy(&land);
+    culture_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(classes_come_from_the_codes),
         cmocka_unit_test(tables_can_be_named_and_their_faults_are_told),
+        cmocka_unit_test(culture_lies_on_them),
         cmocka_unit_test(a_photograph_is_relative_to_its_class),
         cmocka_unit_test(autzen_agrees_with_gdallocationinfo),
     };

@@ -1,5 +1,5 @@
-/* tests/tools/stand_profile.c: what a standing box takes from the ground beside it, along a line through its middle, for
- * tests/system/stand_judge.py: the material and what shines on it, then a line `y_m kelvins` for each place. */
+/* tests/tools/stand_profile.c: what a standing box takes from the ground beside it, along a line through its middle,
+ * for tests/system/stand_judge.py: the material and what shines on it, then a line `y_m kelvins` for each place. */
 #include "tests/scenes/paper_day.h"
 
 #include <stdio.h>

@@ -6,7 +6,10 @@
 static inline double smaller(double a, double b) { return a < b ? a : b; }
 static inline double larger(double a, double b) { return a > b ? a : b; }
 
-enum { few_objects = 6 }; /* that a block may meet: tested one after the other, all rays together */
+enum {
+    most_listed = 192, /* objects that a block may meet; more are found by the tree, ray by ray */
+    run_rays = 64,
+};
 
 typedef struct SceneryFound {
     uint32_t object[hits_capacity]; /* index + 1; 0: none */
@@ -61,13 +64,13 @@ static void across(double u[3], double v[3], const double axis[3])
 }
 
 /* A pyramid about rays that leave one point, up to the farthest limit; false: they leave several, or go all ways. */
-static bool pyramid_of(Planes *out, const Bundle *b, const double *limit_m)
+static bool pyramid_of(Planes *out, double axis[3], const Bundle *b, const double *limit_m)
 {
     static const double margin_m = 1e-3, slope_margin = 1e-9;
     const double        eye[3] = {b->o[0][0], b->o[1][0], b->o[2][0]};
-    double axis[3] = {0, 0, 0}, u[3], v[3], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    double far_m = 0;
-    bool   one_point = true;
+    double              u[3], v[3], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    double              far_m = 0;
+    bool                one_point = true;
     for (int i = 0; i < b->count; i++)
         for (int c = 0; c < 3; c++) one_point &= b->o[c][i] == eye[c], axis[c] += b->d[c][i];
     if (!one_point || !v3_normalize(axis, axis)) return false;
@@ -119,63 +122,146 @@ static void prism_of(Planes *out, const Bundle *b, const double way[3])
     }
 }
 
-/* Objects of both trees within; -1: more than a few. */
-static int list_few(int list[few_objects], const SceneryFrame *f, const Planes *in, bool bent)
+/* ---- objects that a block may meet -------------------------------------------------------------- */
+
+/* An object, and a box about it as these rays meet it. */
+typedef struct Listed {
+    int    object;
+    double near_m; /* of its sphere, along the block's axis, from the world's origin */
+    double low[3], high[3];
+} Listed;
+
+typedef struct List {
+    int    count;   /* -1: more than there is room for */
+    double axis[3]; /* unit */
+    Listed of[most_listed];
+} List;
+
+/* Objects of both trees within, nearest along the axis first. */
+static void list_objects(List *out, const SceneryFrame *f, const Planes *in, const double axis[3], bool bent)
 {
     const BroadLift *lift = raises(f, bent) ? &f->lift : NULL;
     const double(*plane)[4] = (const double(*)[4])in->plane;
-    const int stand = broad_phase_some_in_planes(list, few_objects, f->of->tree, lift, plane, in->count);
-    if (stand < 0 || !f->tree) return stand;
-    const int drive = broad_phase_some_in_planes(list + stand, few_objects - stand, f->tree, lift, plane, in->count);
-    return drive < 0 ? -1 : stand + drive;
+    int object[most_listed];
+    int count = broad_phase_some_in_planes(object, most_listed, f->of->tree, lift, plane, in->count);
+    if (count >= 0 && f->tree) {
+        const int more =
+            broad_phase_some_in_planes(object + count, most_listed - count, f->tree, lift, plane, in->count);
+        count = more < 0 ? -1 : count + more;
+    }
+    out->count = count;
+    memcpy(out->axis, axis, sizeof out->axis);
+    for (int n = 0; n < count; n++) {
+        const PosedEntity *e = frame_posed(f, object[n]);
+        Listed             l = {.object = object[n], .near_m = v3_dot(e->centre_enu, axis) - e->radius_m};
+        int                k = n;
+        scenery_box(e, l.low, l.high);
+        if (lift) {
+            const double lift_m = frame_lift_m(f, object[n]);
+            l.low[2] += lift_m, l.high[2] += lift_m, l.near_m -= lift_m;
+        }
+        for (; k > 0 && out->of[k - 1].near_m > l.near_m; k--) out->of[k] = out->of[k - 1];
+        out->of[k] = l;
+    }
 }
 
-/* Nearest along a direction first. */
-static void sort_along(int *list, int count, const SceneryFrame *f, const double way[3])
+static bool box_within(const Listed *l, const Planes *in)
 {
-    double at_m[few_objects];
-    for (int n = 0; n < count; n++) {
-        const int          object = list[n];
-        const PosedEntity *e = frame_posed(f, object);
-        const double       here_m = v3_dot(e->centre_enu, way) - e->radius_m;
-        int                k = n;
-        for (; k > 0 && at_m[k - 1] > here_m; k--) at_m[k] = at_m[k - 1], list[k] = list[k - 1];
-        at_m[k] = here_m, list[k] = object;
+    static const double room_m = 1e-5;
+    for (int p = 0; p < in->count; p++) {
+        const double *n = in->plane[p];
+        const double  farthest = n[0] * (n[0] > 0 ? l->high[0] : l->low[0]) +
+                                n[1] * (n[1] > 0 ? l->high[1] : l->low[1]) + n[2] * (n[2] > 0 ? l->high[2] : l->low[2]);
+        if (farthest + room_m < n[3]) return false;
     }
+    return true;
+}
+
+/* ---- runs: neighbouring rays of a block ----------------------------------------------------------- */
+
+typedef struct Run {
+    int                 count, ray[run_rays]; /* of the block */
+    double              o[3][run_rays], d[3][run_rays], limit_m[run_rays];
+    uint32_t            object[run_rays];
+    PartHit             hit[run_rays];
+    uint8_t             dark[run_rays];
+    const double *const from[3], *const way[3];
+} Run;
+
+#define RUN(name) Run name = {.from = {name.o[0], name.o[1], name.o[2]}, .way = {name.d[0], name.d[1], name.d[2]}}
+
+static void take_run(Run *r, const Bundle *b, const int *order, int first, const double *limit_m)
+{
+    r->count = b->count - first < run_rays ? b->count - first : run_rays;
+    for (int k = 0; k < r->count; k++) {
+        const int i = order ? order[first + k] : first + k;
+        r->ray[k] = i, r->object[k] = 0, r->dark[k] = 0;
+        r->limit_m[k] = limit_m ? limit_m[i] : INFINITY;
+        for (int c = 0; c < 3; c++) r->o[c][k] = b->o[c][i], r->d[c][k] = b->d[c][i];
+    }
+}
+
+static Bundle bundle_of(const Run *r, bool bent) { return (Bundle){r->from, r->way, r->count, 0, bent}; }
+
+static int list_ones(int list[run_rays], const uint8_t *ask, int count)
+{
+    int listed = 0;
+    for (int k = 0; k < count; k++) {
+        list[listed] = k;
+        listed += ask[k];
+    }
+    return listed;
 }
 
 /* ---- first hits ----------------------------------------------------------------------------------- */
 
-/* All rays of a block against one object. Returns the pairs that were asked. */
-static uint64_t meet_object(double *limit_m, SceneryFound *of, const SceneryFrame *f, int object, const Bundle *b,
-                            const int *order, VisibilityCounters *counters)
+/* The rays of a run against one object. Returns the pairs that were asked. */
+static uint64_t meet_object(Run *r, const SceneryFrame *f, int object, bool bent, VisibilityCounters *counters)
 {
     const PosedEntity *e = frame_posed(f, object);
-    const bool         all = !skips(f->skips_off, SKIP_SCENERY);
-    const double       lift_m = raises(f, b->bent) ? frame_lift_m(f, object) : 0;
-    double             until_m[hits_capacity], nearer_m[hits_capacity], z_m[hits_capacity];
-    uint8_t            ask[hits_capacity];
-    int                list[hits_capacity];
+    const double       lift_m = raises(f, bent) ? frame_lift_m(f, object) : 0;
+    double             until_m[run_rays], nearer_m[run_rays], z_m[run_rays];
+    uint8_t            ask[run_rays];
+    int                list[run_rays];
     if (e->model < 0) return 0;
     const double centre[3] = {e->centre_enu[0], e->centre_enu[1], e->centre_enu[2] + lift_m};
-    for (int i = 0; i < b->count; i++) /* at equal range the lower object has priority */
-        until_m[i] = of->object[i] > (uint32_t)object + 1 ? next_up(limit_m[i]) : limit_m[i];
-    if (all) memset(ask, 1, (size_t)b->count);
-    else rays_meet_sphere(ask, b->count, b->o, b->d, until_m, centre, e->radius_m);
-    const int listed = list_asked(list, order, ask, b->count);
+    for (int k = 0; k < r->count; k++) /* at equal range the lower object has priority */
+        until_m[k] = r->object[k] > (uint32_t)object + 1 ? next_up(r->limit_m[k]) : r->limit_m[k];
+    if (!skips(f->skips_off, SKIP_SCENERY)) memset(ask, 1, sizeof ask);
+    else rays_meet_sphere(ask, r->count, r->from, r->way, until_m, centre, e->radius_m);
+    const int listed = list_ones(list, ask, r->count);
     if (listed == 0) return 0;
     for (int n = 0; n < listed; n++) nearer_m[list[n]] = INFINITY;
-    const double *const from[3] = {b->o[0], b->o[1], lowered(z_m, b->o[2], lift_m, list, listed)};
+    const double *const from[3] = {r->from[0], r->from[1], lowered(z_m, r->from[2], lift_m, list, listed)};
     counters->skipped[SKIP_PART] +=
         (uint64_t)listed * (uint64_t)e->node_count -
-        parts_first_hits(nearer_m, of->hit, e, from, b->d, until_m, list, listed, !skips(f->skips_off, SKIP_PART));
+        parts_first_hits(nearer_m, r->hit, e, from, r->way, until_m, list, listed, !skips(f->skips_off, SKIP_PART));
     for (int n = 0; n < listed; n++) {
-        const int i = list[n];
-        if (!(nearer_m[i] < INFINITY)) continue;
-        limit_m[i] = nearer_m[i];
-        of->object[i] = (uint32_t)object + 1;
+        const int k = list[n];
+        if (!(nearer_m[k] < INFINITY)) continue;
+        r->limit_m[k] = nearer_m[k];
+        r->object[k] = (uint32_t)object + 1;
     }
     return (uint64_t)listed;
+}
+
+/* The rays of a run against the block's list. */
+static uint64_t meet_listed(Run *r, const SceneryFrame *f, const List *list, bool bent, VisibilityCounters *counters)
+{
+    const Bundle b = bundle_of(r, bent);
+    Planes       planes;
+    double       axis[3];
+    uint64_t     asked = 0;
+    if (list->count > 2 && !pyramid_of(&planes, axis, &b, r->limit_m)) planes.count = 0;
+    const double start_m = v3_dot((const double[3]){r->o[0][0], r->o[1][0], r->o[2][0]}, list->axis);
+    for (int n = 0; n < list->count; n++) {
+        double far_m = 0;
+        for (int k = 0; k < r->count; k++) far_m = larger(far_m, r->limit_m[k]);
+        if (list->of[n].near_m - start_m > far_m + 1e-3) break;
+        if (list->count <= 2 || box_within(&list->of[n], &planes))
+            asked += meet_object(r, f, list->of[n].object, bent, counters);
+    }
+    return asked;
 }
 
 static uint64_t meet_crowd(double *limit_m, SceneryFound *of, const SceneryFrame *f, const BroadPhase *tree,
@@ -188,30 +274,47 @@ static uint64_t meet_crowd(double *limit_m, SceneryFound *of, const SceneryFrame
     return counts.asked;
 }
 
+/* By runs: those of the list; NULL: every object. */
+static uint64_t meet_by_runs(double *limit_m, SceneryFound *of, const SceneryFrame *f, const List *list,
+                             const Bundle *b, const int *order, VisibilityCounters *counters)
+{
+    uint64_t asked = 0;
+    for (int first = 0; first < b->count; first += run_rays) {
+        RUN(run);
+        take_run(&run, b, order, first, limit_m);
+        if (list) asked += meet_listed(&run, f, list, b->bent, counters);
+        for (int k = 0; k < f->of->scenery->objects && !list; k++) asked += meet_object(&run, f, k, b->bent, counters);
+        for (int k = 0; k < run.count; k++) {
+            if (!run.object[k]) continue;
+            limit_m[run.ray[k]] = run.limit_m[k];
+            of->object[run.ray[k]] = run.object[k];
+            of->hit[run.ray[k]] = run.hit[k];
+        }
+    }
+    return asked;
+}
+
 static void scenery_first(double *range_m, void *found, const TraceBlock *block, const void *self)
 {
     const SceneryFrame *f = self;
     SceneryFound       *of = found;
     const Bundle        b = {block->o_enu, block->d_enu, block->rays->count, block->rays->columns, block->rays->bent};
-    double              limit_m[hits_capacity];
-    int                 order[hits_capacity], list[few_objects], few = -1;
+    double              limit_m[hits_capacity], axis[3];
+    int                 order[hits_capacity];
+    List                list = {.count = -1};
     Planes              planes;
     uint64_t            asked = 0;
     memcpy(limit_m, block->limit_m, (size_t)b.count * sizeof *limit_m);
     memset(of->object, 0, (size_t)b.count * sizeof *of->object);
     const bool by_tree = skips(f->skips_off, SKIP_SCENERY);
-    if (by_tree && pyramid_of(&planes, &b, limit_m)) {
-        few = list_few(list, f, &planes, b.bent);
-        if (few > 1) sort_along(list, few, f, planes.plane[0]);
-    }
-    if (few != 0) order_rays(order, b.count, b.columns);
-    for (int n = 0; n < few; n++) asked += meet_object(limit_m, of, f, list[n], &b, order, block->counters);
-    if (by_tree && few < 0) {
+    if (by_tree && pyramid_of(&planes, axis, &b, limit_m)) list_objects(&list, f, &planes, axis, b.bent);
+    if (list.count != 0) order_rays(order, b.count, b.columns);
+    if (list.count > 0 || !by_tree)
+        asked += meet_by_runs(limit_m, of, f, by_tree ? &list : NULL, &b, order, block->counters);
+    if (by_tree && list.count < 0) {
         asked += meet_crowd(limit_m, of, f, f->of->tree, &b, order, block->counters);
         if (f->tree) asked += meet_crowd(limit_m, of, f, f->tree, &b, order, block->counters);
     }
-    for (int k = 0; k < f->of->scenery->objects && !by_tree; k++)
-        asked += meet_object(limit_m, of, f, k, &b, order, block->counters);
     for (int i = 0; i < b.count; i++) range_m[i] = of->object[i] ? limit_m[i] : INFINITY;
     block->counters->rays_scenery += asked;
     block->counters->skipped[SKIP_SCENERY] += (uint64_t)(f->of->drawable + f->of->moving) * (uint64_t)b.count - asked;
@@ -255,25 +358,44 @@ static void scenery_finish(Hits *hits, const int *list, int count, const void *f
 
 /* ---- shadows -------------------------------------------------------------------------------------- */
 
-static uint64_t shade_by_object(uint8_t *dark, const SceneryFrame *f, int object, const Bundle *b, const double *far_m,
-                                const int *order, VisibilityCounters *counters)
+static uint64_t shade_by_object(Run *r, const SceneryFrame *f, int object, VisibilityCounters *counters)
 {
     const PosedEntity *e = frame_posed(f, object);
-    uint8_t            ask[hits_capacity];
-    int                list[hits_capacity];
+    uint8_t            ask[run_rays];
+    int                list[run_rays];
     if (e->model < 0) return 0;
     if (!skips(f->skips_off, SKIP_SCENERY)) {
-        memset(ask, 1, (size_t)b->count);
+        memset(ask, 1, sizeof ask);
     } else {
-        rays_meet_sphere(ask, b->count, b->o, b->d, far_m, e->centre_enu, e->radius_m);
-        for (int i = 0; i < b->count; i++) ask[i] &= !dark[i];
+        rays_meet_sphere(ask, r->count, r->from, r->way, r->limit_m, e->centre_enu, e->radius_m);
+        for (int k = 0; k < r->count; k++) ask[k] &= !r->dark[k];
     }
-    const int listed = list_asked(list, order, ask, b->count);
+    const int listed = list_ones(list, ask, r->count);
     if (listed == 0) return 0;
     counters->skipped[SKIP_PART] +=
         (uint64_t)listed * (uint64_t)e->node_count -
-        parts_any_hits(dark, e, b->o, b->d, far_m, list, listed, !skips(f->skips_off, SKIP_PART));
+        parts_any_hits(r->dark, e, r->from, r->way, r->limit_m, list, listed, !skips(f->skips_off, SKIP_PART));
     return (uint64_t)listed;
+}
+
+/* By runs: those of the list; NULL: every object. */
+static uint64_t shade_by_runs(uint8_t *dark, const SceneryFrame *f, const List *list, const Bundle *b,
+                              const double way[3], VisibilityCounters *counters)
+{
+    uint64_t asked = 0;
+    for (int first = 0; first < b->count; first += run_rays) {
+        RUN(run);
+        Planes planes;
+        take_run(&run, b, NULL, first, NULL);
+        const Bundle of = bundle_of(&run, false);
+        if (list && list->count > 2) prism_of(&planes, &of, way);
+        for (int n = 0; list && n < list->count; n++)
+            if (list->count <= 2 || box_within(&list->of[n], &planes))
+                asked += shade_by_object(&run, f, list->of[n].object, counters);
+        for (int k = 0; k < f->of->scenery->objects && !list; k++) asked += shade_by_object(&run, f, k, counters);
+        memcpy(dark + first, run.dark, (size_t)run.count);
+    }
+    return asked;
 }
 
 static uint64_t shade_by_crowd(uint8_t *dark, const SceneryFrame *f, const BroadPhase *tree, const Bundle *b,
@@ -290,31 +412,29 @@ static uint64_t shade_by_crowd(uint8_t *dark, const SceneryFrame *f, const Broad
 static void scenery_any(const TraceShadow *s, const void *self)
 {
     const SceneryFrame *f = self;
-    double              start[3][hits_capacity], way[3][hits_capacity], far_m[hits_capacity];
-    int                 ray[hits_capacity], order[hits_capacity], list[few_objects], left = 0;
+    double              start[3][hits_capacity], way[3][hits_capacity];
+    int                 ray[hits_capacity], left = 0;
     uint8_t             dark[hits_capacity];
     const double *const o[3] = {start[0], start[1], start[2]}, *const d[3] = {way[0], way[1], way[2]};
+    List     list = {.count = -1};
     Planes   planes;
     uint64_t asked = 0;
     for (int i = 0; i < s->count; i++) {
         if (s->dark[i] && skips(f->skips_off, SKIP_SUN_STOPPED)) continue;
         for (int c = 0; c < 3; c++) start[c][left] = s->o_enu[c][i], way[c][left] = s->way_enu[c];
-        far_m[left] = INFINITY, dark[left] = 0, order[left] = left;
-        ray[left++] = i;
+        dark[left] = 0, ray[left++] = i;
     }
     s->counters->skipped[SKIP_SUN_STOPPED] += (uint64_t)(s->count - left);
     if (left == 0) return;
     const Bundle b = {o, d, left, 0, false};
     const bool   by_tree = skips(f->skips_off, SKIP_SCENERY);
-    int          few = f->of->scenery->objects;
     if (by_tree) {
         prism_of(&planes, &b, s->way_enu);
-        few = list_few(list, f, &planes, false);
-        if (few > 1) sort_along(list, few, f, s->way_enu);
+        list_objects(&list, f, &planes, s->way_enu, false);
     }
-    for (int n = 0; n < few; n++)
-        asked += shade_by_object(dark, f, by_tree ? list[n] : n, &b, far_m, order, s->counters);
-    if (few < 0) {
+    if (list.count > 0 || !by_tree)
+        asked += shade_by_runs(dark, f, by_tree ? &list : NULL, &b, s->way_enu, s->counters);
+    if (by_tree && list.count < 0) {
         asked += shade_by_crowd(dark, f, f->of->tree, &b, s->counters);
         if (f->tree) asked += shade_by_crowd(dark, f, f->tree, &b, s->counters);
     }

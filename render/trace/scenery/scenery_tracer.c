@@ -63,7 +63,7 @@ static Status pose(PosedEntity *out, const SceneryTracer *t, int object, const d
 }
 
 /* A box about an object as it is posed, along east, north and up. */
-static bool box_of(const PosedEntity *e, double low[3], double high[3])
+bool scenery_box(const PosedEntity *e, double low[3], double high[3])
 {
     static const double near_miss_m = 1e-3; /* ample: 20 um */
     if (e->model < 0) return false;
@@ -83,7 +83,7 @@ static bool box_of(const PosedEntity *e, double low[3], double high[3])
 static bool box_that_stands(void *user, int object, double low[3], double high[3])
 {
     const SceneryTracer *t = user;
-    return box_of(&t->posed[object], low, high);
+    return scenery_box(&t->posed[object], low, high);
 }
 
 static Status plant_tree(SceneryTracer *t)
@@ -151,6 +151,11 @@ void scenery_tracer_destroy(SceneryTracer *t)
 const Scenery *scenery_tracer_of(const SceneryTracer *t) { return t->scenery; }
 size_t         scenery_tracer_bytes(const SceneryTracer *t) { return arena_bytes(t->arena); }
 
+bool scenery_tracer_box(const SceneryTracer *t, int object, double low[3], double high[3])
+{
+    return scenery_box(&t->posed[object], low, high);
+}
+
 Status scenery_tracer_materials(SceneryTracer *t, const Materials *materials, const char *path)
 {
     const Scenery *s = t->scenery;
@@ -185,7 +190,7 @@ Status scenery_tracer_materials(SceneryTracer *t, const Materials *materials, co
 
 static bool box_that_drives(void *user, int object, double low[3], double high[3])
 {
-    return box_of(frame_posed(user, object), low, high);
+    return scenery_box(frame_posed(user, object), low, high);
 }
 
 static Status move_objects(SceneryFrame *f, double t_s, Arena *arena)
@@ -226,6 +231,18 @@ Status scenery_frame_create(SceneryFrame **out, const SceneryTracer *t, const Sc
     const Status status = t->moving > 0 ? move_objects(f, of->t_s, arena) : STATUS_OK;
     if (status == STATUS_OK) *out = f;
     return status;
+}
+
+uint64_t scenery_frame_hash(const SceneryFrame *f)
+{
+    uint64_t hash = f ? (uint64_t)(uintptr_t)f->of : 0;
+    for (int k = 0; f && f->tree && k < f->of->scenery->movers; k++) {
+        uint64_t bits[3 + 9];
+        memcpy(bits, f->moved[k].p_enu, sizeof f->moved[k].p_enu);
+        memcpy(bits + 3, f->moved[k].r_enu_from_body, sizeof f->moved[k].r_enu_from_body);
+        for (int n = 0; n < 12; n++) hash = (hash ^ bits[n]) * UINT64_C(0x9E3779B97F4A7C15), hash ^= hash >> 29;
+    }
+    return hash;
 }
 
 const Scenery            *scenery_frame_of(const SceneryFrame *f) { return f->of->scenery; }

@@ -23,6 +23,8 @@ size_t         scenery_tracer_bytes(const SceneryTracer *tracer); /* of poses an
 /* Finds the row of every part: before any frame, and again when rows have moved. path: of the table, for the log. */
 Status scenery_tracer_materials(SceneryTracer *tracer, const Materials *materials, const char *path);
 
+/* A box about an object that stands; false: it drives, or there is nothing to meet. */
+bool scenery_tracer_box(const SceneryTracer *tracer, int object, double low[3], double high[3]);
 /* Raises heights [ny][nx], at x0_m + i cell_m and y0_m + j cell_m, to the highest of what stands above each. */
 void scenery_tracer_tops(float *z_m, const SceneryTracer *tracer, int nx, int ny, double x0_m, double y0_m,
                          double cell_m);
@@ -44,6 +46,8 @@ Status scenery_frame_create(SceneryFrame **out, const SceneryTracer *tracer, con
 Status              scenery_frame_join(Visibility *v, const SceneryFrame *frame);
 const SceneryFrame *scenery_frame_in(const Visibility *v); /* that joined; NULL: none */
 
+/* Of all that rays can meet of it, to the bit; 0: NULL. */
+uint64_t                  scenery_frame_hash(const SceneryFrame *frame);
 const Scenery            *scenery_frame_of(const SceneryFrame *frame);
 const struct PosedEntity *scenery_frame_posed(const SceneryFrame *frame, int object); /* model < 0: nothing to meet */
 double                    scenery_frame_lift(const SceneryFrame *frame, int object);  /* for bent rays, m */

@@ -61,11 +61,11 @@ extern const FieldTable variant_fields; /* a line of manifest.jsonl */
  * --sweep FILE`, also any key of `pitviper exercise --keys`, and of vehicles by their name:
  *
  *       scenario.seed: [1, 2, 3]
- *       scenario.vehicles.Tank.type: [tank, truck]
+ *       scenario.vehicles.Tank.type: [tank, carrier]
  *       scenario.vehicles.Tank.route_m: ["-400,-300", "200,100"]
  *
  * Each of the exercises that they make is recorded once, OUT/exercises/eXXXXXXXXXX.pcapng, with the table of what hides
- * in it. Where the scenario has ground.invented, its seed, relief and spacing are those of the variant, and the
+ * in it. Where the scenario has ground.planted, its seed, relief and spacing are those of the variant, and the
  * variant's terrain.place is that of the scenario. Names of files are relative to the sweep's. Every value is validated
  * before the first run; an error is one logged line with file, line, key, value and range. */
 enum { sweep_variants_max = 10000, sweep_axes_max = 64, sweep_value_size = 1024 };

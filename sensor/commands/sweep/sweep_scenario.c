@@ -72,7 +72,7 @@ static Status gather(Settings *out, Scenario *scenario, const Config *config, co
         snprintf(out->text[out->count++], sizeof out->text[0], "%s=%s", scenario_key(key), value);
         status = scenario_set_any(scenario, scenario_key(key), value, source);
     }
-    if (status == STATUS_OK && scenario->ground.invented) { /* the ground of the variant's node */
+    if (status == STATUS_OK && scenario->ground.planted) { /* the ground of the variant's node */
         snprintf(out->text[out->count++], sizeof out->text[0], "ground.seed=%lld", config->seed);
         snprintf(out->text[out->count++], sizeof out->text[0], "ground.relief_m=%.17g", config->terrain.relief_m);
         snprintf(out->text[out->count++], sizeof out->text[0], "ground.spacing_m=%.17g",
@@ -93,7 +93,7 @@ Status sweep_exercise(char name[sweep_name_size], Config *config, const Sweep *s
         return STATUS_OK;
     }
     Status status = gather(set, &scenario, config, sweep, variant);
-    if (status == STATUS_OK && scenario.ground.invented) {
+    if (status == STATUS_OK && scenario.ground.planted) {
         if (*config->terrain.place)
             log_error("sweep: terrain.place is that of the scenario, whose ground is invented: leave it out");
         char place[scenario_place_size];
@@ -155,7 +155,7 @@ Status sweep_exercise_need(char *path, size_t size, const char *out, const char 
     if (status == STATUS_OK && access(path, R_OK) != 0) {
         const char *const fixed[] = {"pitviper", "exercise", sweep->scenario, "--overwrite", "-o", part};
         for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) argv[n++] = fixed[i];
-        if (scenario.ground.invented) argv[n++] = "--places", argv[n++] = places;
+        if (scenario.ground.planted) argv[n++] = "--places", argv[n++] = places;
         for (int i = 0; i < set->count; i++) argv[n++] = "--set", argv[n++] = set->text[i];
         argv[n] = NULL;
         if (record(argv, said) != 0) status = STATUS_BAD_VALUE;

@@ -38,13 +38,9 @@ typedef struct Wanted {
 
 static bool parse_at(Wanted *w, const char *text)
 {
-    char         lat_text[64];
-    double       lat, lon;
-    const size_t comma = strcspn(text, ",");
-    if (!text[comma] || comma >= sizeof lat_text) return false;
-    memcpy(lat_text, text, comma);
-    lat_text[comma] = 0;
-    if (!text_to_double(&lat, lat_text) || !text_to_double(&lon, text + comma + 1) || fabs(lat) > 90 || fabs(lon) > 360)
+    double lat, lon;
+    int    end = 0;
+    if (sscanf(text, "%lf,%lf%n", &lat, &lon, &end) != 2 || text[end] || !(fabs(lat) <= 90) || !(fabs(lon) <= 360))
         return false;
     w->at = (Geodetic){.lat_rad = lat * rad_per_deg, .lon_rad = remainder(lon * rad_per_deg, 2 * pi_rad)};
     w->has_at = true;
@@ -55,14 +51,9 @@ static bool parse_at(Wanted *w, const char *text)
 static int parse(Wanted *w, int argc, char **argv)
 {
     enum { OUT = 'o', HELP = 'h', OVERWRITE = 256, TREES, STORE, AT, HALF };
-    static const struct option options[] = {{"out", 1, NULL, OUT},
-                                            {"overwrite", 0, NULL, OVERWRITE},
-                                            {"trees", 1, NULL, TREES},
-                                            {"store", 1, NULL, STORE},
-                                            {"at", 1, NULL, AT},
-                                            {"half-width", 1, NULL, HALF},
-                                            {"help", 0, NULL, HELP},
-                                            {NULL, 0, NULL, 0}};
+    static const struct option options[] = {
+        {"out", 1, NULL, OUT}, {"overwrite", 0, NULL, OVERWRITE}, {"trees", 1, NULL, TREES}, {"store", 1, NULL, STORE},
+        {"at", 1, NULL, AT},   {"half-width", 1, NULL, HALF},     {"help", 0, NULL, HELP},   {NULL, 0, NULL, 0}};
     w->half_m = 20000;
     optind = 0; /* restart getopt */
     for (int option; (option = command_line_option(argc, argv, "o:h", options)) != -1;) switch (option) {
@@ -131,8 +122,8 @@ static void print_culture(const Culture *c, const CultureReport *r, const Geodet
            at->lat_rad / rad_per_deg, at->lon_rad / rad_per_deg);
     print_kinds("buildings", c->buildings, use, BUILDING_USES, culture_use_name);
     if (c->buildings > 0)
-        printf("  %.1f .. %.1f m high; height stated of %d, by levels of %d, by use and size of %d\n", r->low_m, r->high_m,
-               r->height_from[0], r->height_from[1], r->height_from[2]);
+        printf("  %.1f .. %.1f m high; height stated of %d, by levels of %d, by use and size of %d\n", r->low_m,
+               r->high_m, r->height_from[0], r->height_from[1], r->height_from[2]);
     if (r->courtyards > 0) printf("  %d courtyards are built over\n", r->courtyards);
     print_kinds("lines", c->lines, line, CULTURE_LINE_KINDS, culture_line_name);
     print_kinds("points", c->points, point, CULTURE_POINT_KINDS, culture_point_name);

@@ -150,10 +150,11 @@ static bool add_standing(Paths *p, const Track *track, const bool *fixed, const 
 }
 
 /* From report to report on the ground. The pieces between are straight: a report in less than step_m of the last that
- * was taken is within its path. Reports that no drive joins are places; there, and at both ends, it is as long as wide. */
+ * was taken is within its path. Reports that no drive joins are places; there, and at both ends, it is as long as wide.
+ */
 static void add_track(Paths *p, const Track *track, const bool *fixed, const Model *model)
 {
-    const double half_m = half_of(model), round_m = 0.5 * hypot(model->length_m, model->width_m) + path_room_m;
+    const double        half_m = half_of(model), round_m = 0.5 * hypot(model->length_m, model->width_m) + path_room_m;
     static const double step_m = 1, jump_m = 500;
     double              last[3], here[3];
     bool                any = false;

@@ -14,9 +14,9 @@
 typedef struct Run Run;
 struct Run {
     Options               options;
-    DisLog                view;     /* the log to play; borrowed */
-    double                until_s;  /* causal: arrival time of the last datagram used by the choices */
-    bool                  noted;    /* the recording says what its world was made from: world_note */
+    DisLog                view;    /* the log to play; borrowed */
+    double                until_s; /* causal: arrival time of the last datagram used by the choices */
+    bool                  noted;   /* the recording says what its world was made from: world_note */
     WorldNote             world_note;
     bool                  stopped;  /* by a signal, before the last frame */
     uint64_t              own;      /* datagrams of this node, ignored */

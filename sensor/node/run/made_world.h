@@ -3,8 +3,9 @@
  *
  * A layer has a key: a hash of all that it follows from. The settings that it may depend on are named in one line
  * (config_part), and those that make it see no others; survey, evidence, frame and tables are in the key by their
- * content. It is made again when its key differs, and with it all layers above. The lines of its choices are kept with
- * it, so that every run prints them. Bits do not depend on what was taken over (tests/system/test_sweep_share.sh).
+ * content. It is made again when its key differs, and with it all layers above; but a log and a
+ * survey leave the catalog, and ground of terrain.place, which follow from neither. The lines of its choices are kept
+ * with it, so that every run prints them. Bits do not depend on what was taken over (tests/system/test_sweep_share.sh).
  * Changed files of models and terrain are not detected; changed tables are. */
 #ifndef SENSOR_NODE_RUN_MADE_WORLD_H
 #define SENSOR_NODE_RUN_MADE_WORLD_H

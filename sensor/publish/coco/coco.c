@@ -211,15 +211,27 @@ static json_t *annotation_json(const Coco *c, const FrameRecord *r, const Target
 }
 
 /* Memory for the masks of a frame, which is reused for the next one. */
-static Status measure(Coco *c, const FrameRecord *r, const uint32_t *entity)
+static Status make_room(Coco *c, int count, size_t octets)
 {
-    const int count = r->snapshot->count, width = r->request->view.width, height = r->request->view.height;
     if (count > c->extents) {
         CocoMaskExtent *extent = realloc(c->extent, (size_t)count * sizeof *extent);
         if (!extent) return STATUS_NO_MEMORY;
         c->extent = extent;
         c->extents = count;
     }
+    if (octets <= c->text_size) return STATUS_OK;
+    char *text = realloc(c->text, octets);
+    if (!text) return STATUS_NO_MEMORY;
+    c->text = text;
+    c->text_size = octets;
+    return STATUS_OK;
+}
+
+static Status measure(Coco *c, const FrameRecord *r, const uint32_t *entity)
+{
+    const int    count = r->snapshot->count, width = r->request->view.width, height = r->request->view.height;
+    const Status status = make_room(c, count, 0);
+    if (status != STATUS_OK) return status;
     coco_mask_extents(c->extent, count, entity, width, height);
     size_t most = 0;
     for (int i = 0; i < r->target_count; i++) {
@@ -227,12 +239,7 @@ static Status measure(Coco *c, const FrameRecord *r, const uint32_t *entity)
         const size_t         size = coco_mask_text_size(&region);
         if (size > most) most = size;
     }
-    if (most <= c->text_size) return STATUS_OK;
-    char *text = realloc(c->text, most);
-    if (!text) return STATUS_NO_MEMORY;
-    c->text = text;
-    c->text_size = most;
-    return STATUS_OK;
+    return make_room(c, 0, most);
 }
 
 Status coco_frame(Coco *c, const FrameRecord *r, const uint32_t *entity)
@@ -253,6 +260,42 @@ Status coco_frame(Coco *c, const FrameRecord *r, const uint32_t *entity)
             else coco_mask_text(c->text, entity, (uint32_t)t->plane_value, width, height, &extent);
             status = coco_file_annotation(&c->file, annotation_json(c, r, t, &extent, why, image, (Band)b));
         }
+    }
+    return status;
+}
+
+static json_t *clutter_json(const Coco *c, const FrameRecord *r, const ClutterRecord *of, const CocoMaskExtent *mask,
+                            long long image)
+{
+    int box[4];
+    target_box_coco(box, mask->box);
+    json_t *out = json_pack(
+        "{s:I,s:I,s:i,s:[i,i,i,i],s:I,s:i,s:i,s:s,s:s,s:{s:[i,i],s:s}}", "id", (json_int_t)c->file.annotations + 1,
+        "image_id", (json_int_t)image, "category_id", coco_clutter_category, "bbox", box[0], box[1], box[2], box[3],
+        "area", (json_int_t)mask->pixels, "iscrowd", 0, "ignore", 0, "class", of->class_name, "clutter", of->id,
+        "segmentation", "size", r->request->view.height, r->request->view.width, "counts", c->text);
+    static const char *const as_in_truth[] = {"pixels", "range_m"};
+    for (size_t i = 0; out && i < sizeof as_in_truth / sizeof *as_in_truth; i++)
+        field_carry(out, &clutter_fields, as_in_truth[i], of);
+    return out;
+}
+
+Status coco_clutter(Coco *c, const FrameRecord *r, const uint32_t *plane)
+{
+    const int width = r->request->view.width, height = r->request->view.height;
+    Status    status = r->clutter_count > 0 ? make_room(c, r->clutter_count, 0) : STATUS_OK;
+    if (r->clutter_count == 0 || status != STATUS_OK) return status;
+    coco_mask_extents(c->extent, r->clutter_count, plane, width, height);
+    for (int i = 0; i < r->clutter_count && status == STATUS_OK; i++) {
+        const CocoMaskExtent *mask = &c->extent[i];
+        if (mask->pixels == 0) continue; /* it fills no pixel by more than half */
+        status = make_room(c, 0, coco_mask_text_size(mask));
+        if (status != STATUS_OK) break;
+        coco_mask_text(c->text, plane, (uint32_t)i + 1, width, height, mask);
+        for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++)
+            if (r->request->bands >> b & 1)
+                status = coco_file_annotation(
+                    &c->file, clutter_json(c, r, &r->clutter[i], mask, (long long)r->frame * BAND_COUNT + b + 1));
     }
     return status;
 }

@@ -13,7 +13,8 @@
  *                  `small`, `hidden`, `faint` that holds. plane_value: its value in the truth plane; pixels: area with
  *                  parts of pixels; snr and contrast: of the image's band; bbox_amodal: of all of it, hidden parts and
  *                  what lies outside the image too; the others as in truth.jsonl
- *     categories   all of sensor/frame/target_record.h, whatever is visible: sets can be joined
+ *     categories   all of sensor/frame/target_record.h, whatever is visible: sets can be joined; and `clutter`, where
+ *                  there is an annotation of it (coco_clutter)
  *
  * A target that is hidden is in truth.jsonl only. Written frame by frame to coco.json.part, and renamed when complete;
  * memory does not grow with the number of frames. */
@@ -39,6 +40,10 @@ Status coco_open(Coco **out, const char *folder, const char *ending, CocoLimits 
 Status coco_begin(Coco *coco);
 /* entity: the truth plane of the frame, [height][width], with snapshot index + 1. STATUS_IO, logged. */
 Status coco_frame(Coco *coco, const FrameRecord *record, const uint32_t *entity);
+/* What the frame's record has of clutter, as annotations of the category coco_clutter_category in each image. They have
+ * `class` and `clutter` (its id) where those of targets have `entity` and `type`. plane: [height][width], 1 + index of
+ * record->clutter; 0: none of it. STATUS_IO, logged. */
+Status coco_clutter(Coco *coco, const FrameRecord *record, const uint32_t *plane);
 /* Joins the parts and renames the file; after a failure, or when this one fails (STATUS_IO, logged), there is none.
  * NULL is valid. */
 Status coco_close(Coco *coco);

@@ -1,6 +1,7 @@
 /* sensor/publish/coco/coco_file.c: coco.json while it is written, by a run or from those of a sweep's variants. */
 #include "sensor/publish/coco/coco_file.h"
 #include "pitviper_output.h"
+#include "sensor/frame/clutter_record.h"
 #include "sensor/frame/target_record.h"
 #include "sensor/frame/json_object.h"
 
@@ -51,6 +52,7 @@ static Status put(CocoFile *c, FILE *file, json_t *object, long long place)
 Status coco_file_image(CocoFile *c, json_t *image) { return put(c, c->file, image, c->images++); }
 Status coco_file_annotation(CocoFile *c, json_t *annotation)
 {
+    c->clutter |= json_integer_value(json_object_get(annotation, "category_id")) == coco_clutter_category;
     return put(c, c->waiting, annotation, c->annotations++);
 }
 
@@ -66,6 +68,9 @@ static void join(CocoFile *c, const json_t *info)
         put(c, c->file,
             json_pack("{s:i,s:s,s:s}", "id", k, "name", target_class_name(k), "supercategory", target_class_group(k)),
             k - 1);
+    if (c->clutter)
+        put(c, c->file,
+            json_pack("{s:i,s:s,s:s}", "id", coco_clutter_category, "name", "clutter", "supercategory", "clutter"), 1);
     fputs("],\n\"licenses\":[],\n\"info\":", c->file);
     json_dumpf(info, c->file, JSON_COMPACT);
     fputs("}\n", c->file);

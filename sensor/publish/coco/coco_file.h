@@ -14,7 +14,7 @@ typedef struct CocoFile {
     char      path[coco_path_size], waiting_path[coco_path_size];
     FILE     *file, *waiting;
     long long images, annotations; /* objects written; the next ids, which begin with 1, are one more */
-    bool      failed;
+    bool      failed, clutter;     /* clutter: some annotation is of it */
 } CocoFile;
 
 /* In FOLDER/coco.json.part. After a failure, logged, nothing is left and nothing need be closed. */

@@ -227,19 +227,51 @@ Status consume_latest(Consumer **out, const char *folder, bool patient)
 /* ---- coco.json ----------------------------------------------------------------------------------- */
 
 typedef struct CocoConsumer {
-    Consumer consumer;
-    Coco    *coco;
+    Consumer  consumer;
+    Coco     *coco;
+    bool      clutter;
+    size_t    pixels;
+    uint32_t *plane; /* [pixels]: clutter, as coco_clutter has it */
 } CocoConsumer;
+
+static int by_instance(const void *key, const void *row)
+{
+    const int instance = *(const int *)key, of = ((const ClutterRecord *)row)->instance;
+    return (instance > of) - (instance < of);
+}
+
+static Status put_clutter(CocoConsumer *c, const Frame *frame)
+{
+    const Picture     *p = &frame->seen.picture;
+    const FrameRecord *r = &frame->record;
+    const size_t       pixels = (size_t)p->width * (size_t)p->height;
+    if (!p->instance || r->clutter_count == 0) return STATUS_OK;
+    if (pixels > c->pixels) {
+        uint32_t *plane = realloc(c->plane, pixels * sizeof *plane);
+        if (!plane) return STATUS_NO_MEMORY;
+        c->plane = plane, c->pixels = pixels;
+    }
+    for (size_t px = 0; px < pixels; px++) {
+        const int            instance = p->entity[px] == 0 && p->part[px] ? (int)p->instance[px] : 0;
+        const ClutterRecord *of =
+            instance ? bsearch(&instance, r->clutter, (size_t)r->clutter_count, sizeof *r->clutter, by_instance) : NULL;
+        c->plane[px] = of ? (uint32_t)(of - r->clutter) + 1 : 0;
+    }
+    return coco_clutter(c->coco, r, c->plane);
+}
 
 static Status put_coco(Consumer *consumer, Frame *frame)
 {
-    return coco_frame(((CocoConsumer *)consumer)->coco, &frame->record, frame->seen.picture.entity);
+    CocoConsumer *c = (CocoConsumer *)consumer;
+    const Status  status = coco_frame(c->coco, &frame->record, frame->seen.picture.entity);
+    return status == STATUS_OK && c->clutter ? put_clutter(c, frame) : status;
 }
 
 static Status close_coco(Consumer *consumer)
 {
     CocoConsumer *c = (CocoConsumer *)consumer;
     const Status  status = coco_close(c->coco);
+    free(c->plane);
     free(c);
     return status;
 }
@@ -251,6 +283,7 @@ Status consume_coco(Consumer **out, const char *folder, const Config *config, co
     CocoConsumer *c = calloc(1, sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
     c->consumer = (Consumer){WANT_TARGETS | WANT_PLANES, put_coco, NULL, close_coco, "coco", begin_coco};
+    c->clutter = config->publish.coco_clutter;
     const Status status = coco_open(
         &c->coco, folder, config->publish.png ? "png" : "exr",
         (CocoLimits){config->publish.coco_min_pixels, config->publish.coco_min_visible, config->publish.coco_min_snr},

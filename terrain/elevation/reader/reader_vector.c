@@ -30,7 +30,7 @@ static struct {
     OGRCoordinateTransformationH earth_from_crs;
     OGRFeatureH                  feature; /* whose parts are being sent; NULL: none */
     int                          of_file;
-    int                          part;   /* the next */
+    int                          part;        /* the next */
     GIntBig                      all, passed; /* features of the layer, -1: not known; those that were got of it */
     WireEnd                      end;
 } at;
@@ -76,8 +76,8 @@ static OGRCoordinateTransformationH to_earth(const VectorFile *f, OGRLayerH laye
     }
     OGRCoordinateTransformationH by = OCTNewCoordinateTransformation(crs, earth);
     if (!by)
-        log_error("%s: no way from the coordinate system of %s to WGS 84: %s; ogr2ogr -t_srs EPSG:4326 OUT.gpkg %s", key,
-                  f->path, reader_reason("unknown to PROJ"), f->path);
+        log_error("%s: no way from the coordinate system of %s to WGS 84: %s; ogr2ogr -t_srs EPSG:4326 OUT.gpkg %s",
+                  key, f->path, reader_reason("unknown to PROJ"), f->path);
     return by;
 }
 
@@ -185,7 +185,8 @@ static void limit(OGRLayerH layer, OGRSpatialReferenceH crs, const WireBox *box)
     for (int edge = 0; edge < 4; edge++)
         for (int k = 0; k < side; k++) {
             const double along = (double)k / (side - 1);
-            x[edge * side + k] = edge < 2 ? box->deg[0] + along * (box->deg[2] - box->deg[0]) : box->deg[edge == 2 ? 0 : 2];
+            x[edge * side + k] =
+                edge < 2 ? box->deg[0] + along * (box->deg[2] - box->deg[0]) : box->deg[edge == 2 ? 0 : 2];
             y[edge * side + k] = edge < 2 ? box->deg[edge ? 3 : 1] : box->deg[1] + along * (box->deg[3] - box->deg[1]);
         }
     OCTTransform(by, count, x, y, NULL);
@@ -273,7 +274,7 @@ static size_t put_tags(char *to, int32_t *tags, OGRFeatureH feature)
 /* Writes a part of corners first .. first + count - 1 of a curve; none when it does not fit. */
 static void put_part(Batch *b, WireShape shape, OGRGeometryH curve, int first, int count, int holes)
 {
-    const int number = b->part++;
+    const int   number = b->part++;
     WireFeature f = {.shape = (int32_t)shape,
                      .corners = count <= wire_most_corners ? count : 0,
                      .holes = holes,
@@ -296,8 +297,7 @@ static void put_part(Batch *b, WireShape shape, OGRGeometryH curve, int first, i
             OGR_G_GetPoint(curve, first + k, &x[k], &y[k], &z);
         }
         to_degrees(at.earth_from_crs, f.corners, x, y);
-        for (int k = 0; k < f.corners; k++)
-            place[2 * k] = x[k] * rad_per_deg, place[2 * k + 1] = y[k] * rad_per_deg;
+        for (int k = 0; k < f.corners; k++) place[2 * k] = x[k] * rad_per_deg, place[2 * k + 1] = y[k] * rad_per_deg;
     }
     const size_t texts = put_tags((char *)to + sizeof f + places, &f.tags, at.feature);
     f.texts = (int32_t)texts;
@@ -371,9 +371,9 @@ Status reader_features(uint8_t *data, int32_t *count, const WireBox *box, const 
         }
         if (!at.feature) {
             if (CPLGetLastErrorType() >= CE_Failure)
-                log_warn("%s: %s: read no further than feature %lld: %s; ogr2ogr OUT.gpkg %s says what of it is whole", key,
-                         vector[at.of_file].path, (long long)at.end.features,
-                         reader_reason("it is damaged"), vector[at.of_file].path);
+                log_warn("%s: %s: read no further than feature %lld: %s; ogr2ogr OUT.gpkg %s says what of it is whole",
+                         key, vector[at.of_file].path, (long long)at.end.features, reader_reason("it is damaged"),
+                         vector[at.of_file].path);
             leave_layer();
             continue;
         }

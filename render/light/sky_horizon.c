@@ -1,0 +1,323 @@
+/* render/light/sky_horizon.c: horizons that buildings make, on a grid, and the light that they leave. */
+#include "render/light/sky_horizon.h"
+
+#include "pitviper_simd.h"
+
+#include <stdlib.h>
+
+enum { sectors = sky_horizon_sectors, tile_side = 32, tile_cells = tile_side * tile_side, most_heights = 16 << 20 };
+static const double reach_m = 80, finest_m = 2, height_step_m = 0.25;
+static const double before_cells = 1.2;
+static const float  no_top_m = -1e9f;
+
+/* tan h / (1 + tan h) of 255; 0.25 m. */
+typedef struct Cell {
+    uint8_t slope[sectors], height[sectors];
+    float   ground_m;
+} Cell;
+
+struct SkyHorizons {
+    double x0_m, y0_m, cell_m;
+    int    tiles_x, tiles_y, tiles;
+    int   *tile_of; /* [tiles_x tiles_y]: -1: none */
+    Cell  *cell;    /* [tiles][tile_cells] */
+    double wall_rho[optical_channel_count];
+};
+
+/* ---- making -------------------------------------------------------------------------------------- */
+
+typedef struct Making {
+    SkyHorizons     *h;
+    const Elevation *elevation;
+    float           *top_m; /* [ny][nx] */
+    int              nx, ny;
+    int             *tile; /* [tiles]: where each lies */
+} Making;
+
+static bool is_building(const Scenery *s, int k) { return s->object[k].kind == SCENERY_BUILDINGS; }
+
+/* What buildings cover, with the reach about it; false: there are none. */
+static bool bounds_of(double low[2], double high[2], const SceneryTracer *tracer)
+{
+    const Scenery *s = scenery_tracer_of(tracer);
+    bool           any = false;
+    for (int c = 0; c < 2; c++) low[c] = INFINITY, high[c] = -INFINITY;
+    for (int k = 0; k < s->objects; k++) {
+        double box[2][3];
+        if (!is_building(s, k) || !scenery_tracer_box(tracer, k, box[0], box[1])) continue;
+        any = true;
+        for (int c = 0; c < 2; c++)
+            low[c] = fmin(low[c], box[0][c] - reach_m), high[c] = fmax(high[c], box[1][c] + reach_m);
+    }
+    return any;
+}
+
+/* Tiles within reach of a building; returns their number. */
+static int mark_tiles(SkyHorizons *h, const SceneryTracer *tracer)
+{
+    const Scenery *s = scenery_tracer_of(tracer);
+    const double   tile_m = tile_side * h->cell_m;
+    int            count = 0;
+    for (int t = 0; t < h->tiles_x * h->tiles_y; t++) h->tile_of[t] = -1;
+    for (int k = 0; k < s->objects; k++) {
+        double box[2][3];
+        if (!is_building(s, k) || !scenery_tracer_box(tracer, k, box[0], box[1])) continue;
+        const int left = (int)clamp((box[0][0] - reach_m - h->x0_m) / tile_m, 0, h->tiles_x - 1);
+        const int right = (int)clamp((box[1][0] + reach_m - h->x0_m) / tile_m, 0, h->tiles_x - 1);
+        const int below = (int)clamp((box[0][1] - reach_m - h->y0_m) / tile_m, 0, h->tiles_y - 1);
+        const int above = (int)clamp((box[1][1] + reach_m - h->y0_m) / tile_m, 0, h->tiles_y - 1);
+        for (int j = below; j <= above; j++)
+            for (int i = left; i <= right; i++)
+                if (h->tile_of[j * h->tiles_x + i] < 0) h->tile_of[j * h->tiles_x + i] = count++;
+    }
+    return count;
+}
+
+static float top_at(const Making *m, int i, int j)
+{
+    return i < 0 || j < 0 || i >= m->nx || j >= m->ny ? no_top_m : m->top_m[(size_t)j * (size_t)m->nx + (size_t)i];
+}
+
+/* The cell itself, or the nearest that no building covers: the ground there is what is seen. */
+static void uncovered(int at[2], const Making *m, int i, int j)
+{
+    at[0] = i, at[1] = j;
+    for (int ring = 0; ring < 8; ring++) {
+        int best = 1 << 20;
+        for (int y = -ring; y <= ring; y++)
+            for (int x = -ring; x <= ring; x++) {
+                if (top_at(m, i + x, j + y) > no_top_m || x * x + y * y >= best) continue;
+                best = x * x + y * y, at[0] = i + x, at[1] = j + y;
+            }
+        if (best < 1 << 20) return;
+    }
+}
+
+/* Two directions a sector, each in growing steps. */
+static void fill_cell(Cell *out, const Making *m, int i, int j)
+{
+    const double cell_m = m->h->cell_m, x_m = m->h->x0_m + i * cell_m, y_m = m->h->y0_m + j * cell_m;
+    int          at[2];
+    *out = (Cell){.ground_m = (float)elevation_height(m->elevation, x_m, y_m, NULL)};
+    uncovered(at, m, i, j);
+    for (int s = 0; s < sectors; s++) {
+        double sum = 0, height_m = 0;
+        for (int k = 0; k < 2; k++) {
+            const double azimuth = 2 * pi_rad * (s + 0.25 + 0.5 * k - 0.5) / sectors;
+            double       tangent = 0, before = 0;
+            for (double way = 1; way * cell_m <= reach_m; before = way, way += way < 4 ? 1 : 0.25 * way) {
+                const int    x = at[0] + (int)lround(way * sin(azimuth)), y = at[1] + (int)lround(way * cos(azimuth));
+                const double rise_m = (double)(top_at(m, x, y) - out->ground_m);
+                const double here = rise_m / (0.5 * (before + way) * cell_m); /* its side lies between the two */
+                if (!(here > tangent)) continue;
+                tangent = here;
+                height_m = fmax(height_m, rise_m);
+            }
+            sum += 0.5 * tangent / (1 + tangent);
+        }
+        out->slope[s] = (uint8_t)lround(255 * sum);
+        out->height[s] = (uint8_t)lround(clamp(height_m / height_step_m, 1, 255));
+    }
+}
+
+static void fill_tile(void *user, int worker, int task)
+{
+    const Making *m = user;
+    const int     i0 = m->tile[task] % m->h->tiles_x * tile_side, j0 = m->tile[task] / m->h->tiles_x * tile_side;
+    (void)worker;
+    for (int k = 0; k < tile_cells; k++)
+        fill_cell(&m->h->cell[(size_t)task * tile_cells + (size_t)k], m, i0 + k % tile_side, j0 + k / tile_side);
+}
+
+/* Reflectance of walls, by their area. */
+static void mean_wall(SkyHorizons *h, const Scenery *s, const Materials *materials)
+{
+    double area = 0;
+    for (int m = 0; m < s->models; m++)
+        for (int t = 0; t < s->model[m].triangle_count; t++) {
+            const Model    *model = &s->model[m];
+            const uint32_t *v = model->triangle[t];
+            double          ab[3], ac[3], n[3];
+            v3_sub(ab, model->vertex[v[1]], model->vertex[v[0]]);
+            v3_sub(ac, model->vertex[v[2]], model->vertex[v[0]]);
+            v3_cross(n, ab, ac);
+            const double of = v3_length(n);
+            const int    row = materials_find(materials, model->part[model->triangle_part[t]].material);
+            if (!(fabs(n[2]) < 0.5 * of) || row < 0) continue;
+            area += of;
+            for (int c = 0; c < optical_channel_count; c++)
+                h->wall_rho[c] += of * (double)materials->material[row].rho[c];
+        }
+    for (int c = 0; c < optical_channel_count && area > 0; c++) h->wall_rho[c] /= area;
+}
+
+static Status fill(SkyHorizons *h, const SceneryTracer *tracer, const Elevation *elevation, Pool *pool)
+{
+    Making       m = {.h = h, .elevation = elevation, .nx = h->tiles_x * tile_side, .ny = h->tiles_y * tile_side};
+    const size_t heights = (size_t)m.nx * (size_t)m.ny;
+    Status       status = STATUS_OK;
+    m.top_m = malloc(heights * sizeof *m.top_m);
+    m.tile = malloc(((size_t)h->tiles + 1) * sizeof *m.tile);
+    h->cell = malloc(((size_t)h->tiles * tile_cells + 1) * sizeof *h->cell);
+    if (!m.top_m || !m.tile || !h->cell) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        for (size_t k = 0; k < heights; k++) m.top_m[k] = no_top_m;
+        scenery_tracer_tops(m.top_m, tracer, m.nx, m.ny, h->x0_m, h->y0_m, h->cell_m);
+        for (int t = 0; t < h->tiles_x * h->tiles_y; t++)
+            if (h->tile_of[t] >= 0) m.tile[h->tile_of[t]] = t;
+        if (pool) pool_run(pool, h->tiles, fill_tile, &m);
+        else
+            for (int t = 0; t < h->tiles; t++) fill_tile(&m, 0, t);
+    }
+    free(m.top_m);
+    free(m.tile);
+    return status;
+}
+
+Status sky_horizons_create(SkyHorizons **out, const SceneryTracer *tracer, const Elevation *elevation,
+                           const Materials *materials, Pool *pool)
+{
+    double low[2], high[2];
+    Status status = STATUS_OK;
+    *out = NULL;
+    if (!bounds_of(low, high, tracer)) return STATUS_OK;
+    SkyHorizons *h = calloc(1, sizeof *h);
+    if (!h) return STATUS_NO_MEMORY;
+    h->x0_m = low[0], h->y0_m = low[1];
+    for (h->cell_m = finest_m;; h->cell_m *= 2) { /* no more heights, and no more cells, than there may be */
+        const double tile_m = tile_side * h->cell_m, wide = (high[0] - low[0]) / tile_m,
+                     deep = (high[1] - low[1]) / tile_m;
+        if (!((wide + 1) * (deep + 1) * tile_cells <= most_heights)) continue;
+        h->tiles_x = (int)wide + 1, h->tiles_y = (int)deep + 1;
+        free(h->tile_of);
+        h->tile_of = malloc((size_t)h->tiles_x * (size_t)h->tiles_y * sizeof *h->tile_of);
+        if (!h->tile_of) break;
+        h->tiles = mark_tiles(h, tracer);
+        if ((int64_t)h->tiles * tile_cells <= sky_horizon_most_cells) break;
+    }
+    status = h->tile_of ? fill(h, tracer, elevation, pool) : STATUS_NO_MEMORY;
+    if (status != STATUS_OK) {
+        sky_horizons_destroy(h);
+        return status;
+    }
+    mean_wall(h, scenery_tracer_of(tracer), materials);
+    *out = h;
+    return STATUS_OK;
+}
+
+void sky_horizons_destroy(SkyHorizons *h)
+{
+    if (!h) return;
+    free(h->tile_of);
+    free(h->cell);
+    free(h);
+}
+
+size_t sky_horizons_bytes(const SkyHorizons *h)
+{
+    return (size_t)h->tiles * tile_cells * sizeof *h->cell + (size_t)h->tiles_x * (size_t)h->tiles_y * sizeof(int);
+}
+
+/* ---- a hit --------------------------------------------------------------------------------------- */
+
+static const Cell *cell_at(const SkyHorizons *h, int i, int j)
+{
+    if (i < 0 || j < 0 || i >= h->tiles_x * tile_side || j >= h->tiles_y * tile_side) return NULL;
+    const int tile = h->tile_of[j / tile_side * h->tiles_x + i / tile_side];
+    return tile < 0 ? NULL : &h->cell[(size_t)tile * tile_cells + (size_t)(j % tile_side * tile_side + i % tile_side)];
+}
+
+static float sum8(F32x8 x)
+{
+    float each[8], sum = 0;
+    f32x8_store(each, x);
+    for (int k = 0; k < 8; k++) sum += each[k];
+    return sum;
+}
+
+/* Light of a sky that is as bright everywhere, on a plane, of the part of a sector above a horizon of this tangent: the
+ * integrals over elevation h .. pi/2 of cos^2 and of sin cos. */
+static F32x8 above(F32x8 tangent, F32x8 aside, F32x8 up)
+{
+    const F32x8 one = f32x8_set(1), low = f32x8_less(tangent, one), per = one / f32x8_max(tangent, f32x8_set(1e-6));
+    const F32x8 t = f32x8_select(low, tangent, per);
+    const F32x8 arc = t * (f32x8_set(0.7853982) + f32x8_set(0.273) * (one - t)); /* arc tangent, within 0.004 */
+    const F32x8 left = f32x8_select(low, f32x8_set(0.5 * pi_rad) - arc, arc),
+                cosine2 = one / f32x8_fma(tangent, tangent, one);
+    return f32x8_max(aside * (left - tangent * cosine2) + up * cosine2, f32x8_set(0));
+}
+
+/* Of one cell at this height; 1: none. before_m: the cell is that far before the place, along the normal: what makes
+ * its horizon is as much farther from the place. */
+static float share_of(const Cell *cell, float z_m, F32x8 aside, F32x8 up, float open, double before_m)
+{
+    if (!cell || !(open > 1e-4f)) return 1;
+    const F32x8 code = f32x8_of_ints(i32x8_of_bytes(cell->slope)) * f32x8_set(1.0 / 255);
+    const F32x8 high = f32x8_of_ints(i32x8_of_bytes(cell->height)) * f32x8_set(height_step_m);
+    const F32x8 over = _mm256_set1_ps(z_m - cell->ground_m > 0 ? z_m - cell->ground_m : 0);
+    const F32x8 near = code / f32x8_max(f32x8_set(1) - code, f32x8_set(1e-3));
+    const F32x8 more = f32x8_fma(near * f32x8_set(before_m), f32x8_max(aside, f32x8_set(0)) / high, f32x8_set(1));
+    const F32x8 tangent = near / more * f32x8_clamp(f32x8_set(1) - over / high, 0, 1);
+
+    const float share = sum8(above(tangent, aside, up)) / open;
+    return share < 1 ? share : 1;
+}
+
+/* A place somewhat before its surface, so that its cell is not that of what it is on. */
+static float share_at(const SkyHorizons *h, double x_m, double y_m, float z_m, const float n[3])
+{
+    static const float sine[8] = {0, 0.70710678f, 1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f};
+    static const float cosine[8] = {1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f, 0, 0.70710678f};
+    const double       x = (x_m - h->x0_m) / h->cell_m + before_cells * (double)n[0],
+                 y = (y_m - h->y0_m) / h->cell_m + before_cells * (double)n[1];
+    if (!(x >= 0 && y >= 0 && x < h->tiles_x * tile_side && y < h->tiles_y * tile_side)) return 1;
+    const int   i = (int)x, j = (int)y;
+    const Cell *cell[4] = {cell_at(h, i, j), cell_at(h, i + 1, j), cell_at(h, i, j + 1), cell_at(h, i + 1, j + 1)};
+    if (!cell[0] && !cell[1] && !cell[2] && !cell[3]) return 1;
+    const F32x8 aside = f32x8_fma(_mm256_set1_ps(n[0]), f32x8_load(sine), _mm256_set1_ps(n[1]) * f32x8_load(cosine));
+    const F32x8 up = _mm256_set1_ps(n[2]);
+    const float open = sum8(above(f32x8_set(0), aside, up)), u = (float)(x - i), v = (float)(y - j);
+    const float weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+    float       share = 0;
+    for (int k = 0; k < 4; k++) share += weight[k] * share_of(cell[k], z_m, aside, up, open, before_cells * h->cell_m);
+    return share;
+}
+
+double sky_horizon_share(const SkyHorizons *h, const double p_enu[3], const double n_enu[3])
+{
+    const float n[3] = {(float)n_enu[0], (float)n_enu[1], (float)n_enu[2]};
+    return (double)share_at(h, p_enu[0], p_enu[1], (float)p_enu[2], n);
+}
+
+void sky_horizon_light(SkyHorizonLight *out, const SkyHorizons *h, const Air *air,
+                       const double level_w_m2[AIR_BAND_COUNT])
+{
+    const Daylight *light = &air->light;
+    const double    up = light->sun_d_enu[2], beam = up > 0 ? sqrt(fmax(1 - up * up, 0)) / pi_rad : 0;
+    *out = (SkyHorizonLight){{0}, {0}, {0}};
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        out->sky[b] = (float)light->sky_w_m2[b], out->level[b] = (float)level_w_m2[b];
+        out->wall[b] =
+            b >= AIR_MWIR
+                ? (float)level_w_m2[b] /* about as warm as the ground */
+                : (float)(h->wall_rho[b] * (light->sun_w_m2[b] * beam + 0.5 * (light->sky_w_m2[b] + level_w_m2[b])));
+    }
+}
+
+void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, const SkyHorizonLight *light,
+                      unsigned air_bands, const Hits *hits)
+{
+    const F32x8 sky = f32x8_load(light->sky), level = f32x8_load(light->level), wall = f32x8_load(light->wall);
+    for (int i = 0; i < hits->count; i++) {
+        if (hits->kind[i] != hit_ground && hits->kind[i] != hit_scenery) continue;
+        const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        const float share = share_at(h, hits->p_enu[0][i], hits->p_enu[1][i], (float)hits->p_enu[2][i], n);
+        float       of[8];
+        if (share == 1) continue;
+        const F32x8 up = _mm256_set1_ps(0.5f * (1 + n[2])), down = _mm256_set1_ps(0.5f * (1 - n[2])) * level;
+        const F32x8 open = f32x8_max(sky * up + down, f32x8_set(1e-20));
+        f32x8_store(of, (up * (_mm256_set1_ps(share) * sky + _mm256_set1_ps(1 - share) * wall) + down) / open);
+        for (int b = 0; b < AIR_BAND_COUNT; b++)
+            if (air_bands >> b & 1) factor[b][i] *= of[b];
+    }
+}
