@@ -10,6 +10,7 @@ static const char *drop(int i) { return i < DIS_DROP_COUNT ? dis_drop_name((DisD
 static const char *skip(int i) { return i < SKIP_COUNT ? visibility_skip_name((Skip)i) : NULL; }
 static const char *what_skip(int i) { return visibility_skip_what((Skip)i); }
 static const char *kind(int i) { return i < PLANT_STANDING ? plant_name((PlantKind)i) : NULL; }
+static const char *clutter(int i) { return i + 1 < CLUTTER_CLASSES ? scenery_class_name((SceneryClass)(i + 1)) : NULL; }
 static const char *stage(int i) { return i < session_stages ? session_stage_name[i] : NULL; }
 
 /* Gives the reasons that are faults. */
@@ -33,6 +34,7 @@ static const ReferenceWord words[] = {
     {"FAULT", "one of", answer_fault, NULL},
     {"SKIP", "one of", skip, what_skip},
     {"KIND", "one of", kind, NULL},
+    {"CLASS", "one of", clutter, NULL},
     {"STAGE", "one of", stage, NULL},
     {"LATENCY", "one of", latency, NULL},
     REFERENCE_WORD_CONSUMER,
