@@ -5,7 +5,13 @@
 
 #include <stdlib.h>
 
-enum { sectors = sky_horizon_sectors, tile_side = 32, tile_cells = tile_side * tile_side, most_heights = 16 << 20 };
+enum {
+    sectors = sky_horizon_sectors,
+    tile_side = 32,
+    tile_cells = tile_side * tile_side,
+    most_heights = 16 << 20,
+    most_steps = 32
+};
 static const double reach_m = 80, finest_m = 2, height_step_m = 0.25;
 static const double before_cells = 1.2;
 static const float  no_top_m = -1e9f;
@@ -26,12 +32,19 @@ struct SkyHorizons {
 
 /* ---- making -------------------------------------------------------------------------------------- */
 
+typedef struct Step {
+    int   x, y;
+    float per_m; /* 1 / distance */
+} Step;
+
 typedef struct Making {
     SkyHorizons     *h;
     const Elevation *elevation;
     float           *top_m; /* [ny][nx] */
     int              nx, ny;
     int             *tile; /* [tiles]: where each lies */
+    int              steps;
+    Step             step[2 * sectors][most_steps];
 } Making;
 
 static bool is_building(const Scenery *s, int k) { return s->object[k].kind == SCENERY_BUILDINGS; }
@@ -94,6 +107,22 @@ static void uncovered(int at[2], const Making *m, int i, int j)
 }
 
 /* Two directions a sector, each in growing steps. */
+static void list_ways(Making *m)
+{
+    const double cell_m = m->h->cell_m;
+    for (int k = 0; k < 2 * sectors; k++) {
+        const double azimuth = 2 * pi_rad * (0.5 * k - 0.25) / sectors;
+        double       before = 0;
+        m->steps = 0;
+        for (double way = 1; way * cell_m <= reach_m && m->steps < most_steps; way += way < 4 ? 1 : 0.25 * way) {
+            Step *to = &m->step[k][m->steps++];
+            to->x = (int)lround(way * sin(azimuth)), to->y = (int)lround(way * cos(azimuth));
+            to->per_m = (float)(1 / (0.5 * (before + way) * cell_m)); /* its side lies between the two */
+            before = way;
+        }
+    }
+}
+
 static void fill_cell(Cell *out, const Making *m, int i, int j)
 {
     const double cell_m = m->h->cell_m, x_m = m->h->x0_m + i * cell_m, y_m = m->h->y0_m + j * cell_m;
@@ -101,22 +130,20 @@ static void fill_cell(Cell *out, const Making *m, int i, int j)
     *out = (Cell){.ground_m = (float)elevation_height(m->elevation, x_m, y_m, NULL)};
     uncovered(at, m, i, j);
     for (int s = 0; s < sectors; s++) {
-        double sum = 0, height_m = 0;
-        for (int k = 0; k < 2; k++) {
-            const double azimuth = 2 * pi_rad * (s + 0.25 + 0.5 * k - 0.5) / sectors;
-            double       tangent = 0, before = 0;
-            for (double way = 1; way * cell_m <= reach_m; before = way, way += way < 4 ? 1 : 0.25 * way) {
-                const int    x = at[0] + (int)lround(way * sin(azimuth)), y = at[1] + (int)lround(way * cos(azimuth));
-                const double rise_m = (double)(top_at(m, x, y) - out->ground_m);
-                const double here = rise_m / (0.5 * (before + way) * cell_m); /* its side lies between the two */
-                if (!(here > tangent)) continue;
-                tangent = here;
-                height_m = fmax(height_m, rise_m);
+        float sum = 0, height_m = 0;
+        for (int k = 2 * s; k < 2 * s + 2; k++) {
+            float tangent = 0;
+            for (int n = 0; n < m->steps; n++) {
+                const Step *step = &m->step[k][n];
+                const float rise_m = top_at(m, at[0] + step->x, at[1] + step->y) - out->ground_m;
+                if (!(rise_m * step->per_m > tangent)) continue;
+                tangent = rise_m * step->per_m;
+                height_m = rise_m > height_m ? rise_m : height_m;
             }
-            sum += 0.5 * tangent / (1 + tangent);
+            sum += 0.5f * tangent / (1 + tangent);
         }
-        out->slope[s] = (uint8_t)lround(255 * sum);
-        out->height[s] = (uint8_t)lround(clamp(height_m / height_step_m, 1, 255));
+        out->slope[s] = (uint8_t)(255 * sum + 0.5f);
+        out->height[s] = (uint8_t)clamp((double)height_m / height_step_m + 0.5, 1, 255);
     }
 }
 
@@ -133,21 +160,25 @@ static void fill_tile(void *user, int worker, int task)
 static void mean_wall(SkyHorizons *h, const Scenery *s, const Materials *materials)
 {
     double area = 0;
-    for (int m = 0; m < s->models; m++)
-        for (int t = 0; t < s->model[m].triangle_count; t++) {
-            const Model    *model = &s->model[m];
-            const uint32_t *v = model->triangle[t];
-            double          ab[3], ac[3], n[3];
-            v3_sub(ab, model->vertex[v[1]], model->vertex[v[0]]);
-            v3_sub(ac, model->vertex[v[2]], model->vertex[v[0]]);
-            v3_cross(n, ab, ac);
-            const double of = v3_length(n);
-            const int    row = materials_find(materials, model->part[model->triangle_part[t]].material);
-            if (!(fabs(n[2]) < 0.5 * of) || row < 0) continue;
-            area += of;
-            for (int c = 0; c < optical_channel_count; c++)
-                h->wall_rho[c] += of * (double)materials->material[row].rho[c];
+    for (int m = 0; m < s->models; m++) {
+        const Model *model = &s->model[m];
+        for (int p = 0; p < model->part_count; p++) {
+            const ModelPart *part = &model->part[p];
+            const int        row = materials_find(materials, part->material);
+            double           upright = 0;
+            for (int t = part->first_triangle; t < part->first_triangle + part->triangle_count; t++) {
+                const uint32_t *v = model->triangle[t];
+                double          ab[3], ac[3], n[3];
+                v3_sub(ab, model->vertex[v[1]], model->vertex[v[0]]);
+                v3_sub(ac, model->vertex[v[2]], model->vertex[v[0]]);
+                v3_cross(n, ab, ac);
+                upright += fabs(n[2]) < 0.5 * v3_length(n) ? v3_length(n) : 0;
+            }
+            area += row < 0 ? 0 : upright;
+            for (int c = 0; c < optical_channel_count && row >= 0; c++)
+                h->wall_rho[c] += upright * (double)materials->material[row].rho[c];
         }
+    }
     for (int c = 0; c < optical_channel_count && area > 0; c++) h->wall_rho[c] /= area;
 }
 
@@ -161,6 +192,7 @@ static Status fill(SkyHorizons *h, const SceneryTracer *tracer, const Elevation 
     h->cell = malloc(((size_t)h->tiles * tile_cells + 1) * sizeof *h->cell);
     if (!m.top_m || !m.tile || !h->cell) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
+        list_ways(&m);
         for (size_t k = 0; k < heights; k++) m.top_m[k] = no_top_m;
         scenery_tracer_tops(m.top_m, tracer, m.nx, m.ny, h->x0_m, h->y0_m, h->cell_m);
         for (int t = 0; t < h->tiles_x * h->tiles_y; t++)
