@@ -16,6 +16,8 @@ typedef struct TerrainOptions {
     /* lists of files and folders, separated by commas; empty: none */
     char elevation[terrain_paths_size], surface[terrain_paths_size], cover[terrain_paths_size],
         photo[terrain_paths_size], canopy_height[terrain_path_size], canopy_cover[terrain_path_size];
+    char buildings[terrain_path_size]; /* GeoJSON that the buildings of surface models are written to; empty: they are
+                                          roofs of the ground */
     char cover_table[terrain_path_size], geoid[terrain_path_size]; /* cover_table: empty: chosen; geoid: empty: EGM96 */
     char unit[16], srs[128],
         nodata[32]; /* what elevation and surface files are taken to have where nothing stands after their name */
@@ -30,7 +32,7 @@ typedef struct TerrainOptions {
 
 void terrain_options_default(TerrainOptions *out);
 /* One option by its name: elevation (added to those before), surface, cover, cover-table, photo, canopy-height,
- * canopy-cover, geoid, sources-from, vertical, unit, srs, nodata, spacing, origin, size, horizon, most-gb. False: *why
+ * canopy-cover, buildings, geoid, sources-from, vertical, unit, srs, nodata, spacing, origin, size, horizon, most-gb. False: *why
  * says what is accepted, in static storage, and nothing has changed. */
 bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, const char *value);
 /* The names in a list of elevation or surface files, each followed by what the options choose for it (raster.h).
@@ -65,6 +67,8 @@ typedef struct TerrainReport {
     CoverReport     cover;           /* posting_m 0: there is no cover */
     double          photo_posting_m; /* 0: there is no photograph */
     double          canopy_scale_m;  /* unit of the numbers in a canopy height file; 0: there is none */
+    int             records;         /* buildings that TerrainOptions.buildings has */
+    int             records_left;    /* patches of roof that made no outline */
     double          kind_share[3];   /* shares of the posts: bare, building, tree */
     double          seconds[4]; /* time of each stage: levels around level 0, posts, cover and photograph, writing */
     bool            stopped;    /* whether the progress function stopped it */

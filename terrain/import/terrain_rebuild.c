@@ -36,14 +36,15 @@ static bool lies_within(char *name, const char *folder)
     return begins_with_folder(name, folder) && !strstr(name, "/..") && strncmp(name, "/vsi", 4) != 0;
 }
 
-/* Whether all sources lie within a folder. Links are followed; a file that does not exist is judged by its name; a name
+/* Whether all sources, and what is written beside the store, lie within a folder. Links are followed; a file that does not exist is judged by its name; a name
  * that is not a file's (on a server, in an archive) lies outside. outside: the first source that does, "" when none
  * does. */
 static bool sources_within(char *outside, size_t outside_size, const TerrainOptions *o, const char *folder)
 {
     const char *const lists[] = {
         o->elevation,     o->surface,      o->cover, o->photo,
-        o->canopy_height, o->canopy_cover, o->geoid, strpbrk(o->cover_table, "./") ? o->cover_table : ""};
+        o->canopy_height, o->canopy_cover, o->geoid, strpbrk(o->cover_table, "./") ? o->cover_table : "",
+        o->buildings};
     *outside = 0;
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
         for (const char *at = lists[k]; *at;) {
