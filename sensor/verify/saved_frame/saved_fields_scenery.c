@@ -86,6 +86,7 @@ void saved_fields_scenery(Fields *f, SavedFrame *file)
     field_reals(f, "centre of culture", plan->invented.centre_m, 2, 1e6);
     field_real(f, "width of culture", &plan->invented.half_width_m, 0, 1e6);
     field_real(f, "clutter", &plan->clutter, 0, 20);
+    field_chars(f, "table of clutter", plan->clutter_table, sizeof plan->clutter_table);
     field_u64(f, &plan->clutter_seed);
     field_reals(f, "place of clutter", plan->south_west_m, 2, 2e6);
     field_reals(f, "place of clutter", plan->north_east_m, 2, 2e6);
