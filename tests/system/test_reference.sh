@@ -91,9 +91,11 @@ exercise "$tmp/two.yaml" "$tmp/two.pcap"
 run replay "$tmp/two.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 --bands optical --host observer \
     --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
+# the sweep's has clutter, 20 times what there is, in a wide view from above
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
 run replay "$tmp/two.yaml" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml" \
-    --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000
+    --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000 \
+    --set terrain.buildings=invented --set terrain.clutter=20 --set publish.coco_clutter=true --set sensor.hfov_deg=40
 python3 tests/system/score_folder.py "$tmp/score" --frames 30
 run score "$tmp/score" --max-age 20 --min-visible 0.5
 check "a score" [ $code = 0 ]
