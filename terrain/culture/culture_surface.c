@@ -196,13 +196,22 @@ static void consider(RoofFit *best, const RoofFit *other)
     if (other->ridge_m - other->eaves_m >= least_rise_m && other->rms_m < better * best->rms_m) *best = *other;
 }
 
+static int by_height(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
 static RoofFit fit_roof(const Roof *r, double *x)
 {
     double  a, b, rms;
     RoofFit best = {.shape = ROOF_FLAT};
     for (int k = 0; k < r->count; k++) x[k] = 0;
     fit_line(&a, &b, &rms, r->count, x, r->z_m);
-    best.eaves_m = best.ridge_m = a, best.rms_m = fmax(rms, 0.02);
+    memcpy(x, r->z_m, (size_t)r->count * sizeof *x);
+    qsort(x, (size_t)r->count, sizeof *x, by_height);
+    /* a flat roof lies where most of its cells are, not parapets and what stands on it */
+    best.eaves_m = best.ridge_m = x[r->count / 2], best.rms_m = fmax(rms, 0.02);
     for (int axis = 0; axis < 2; axis++) { /* gables: the ridge along that axis */
         const double *off = axis ? r->u_m : r->v_m, half = r->half_m[1 - axis];
         for (int k = 0; k < r->count; k++) x[k] = fabs(off[k]);
