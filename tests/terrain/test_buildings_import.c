@@ -174,6 +174,17 @@ static Culture read_back(CultureReport *report, const char *path, const TerrainS
     return culture;
 }
 
+static bool same_files(const char *a, const char *b)
+{
+    FILE *one = fopen(a, "rb"), *two = fopen(b, "rb");
+    int   x = 0, y = 0;
+    while (one && two && x == y && x != EOF) x = fgetc(one), y = fgetc(two);
+    const bool same = one && two && x == y;
+    if (one) fclose(one);
+    if (two) fclose(two);
+    return same;
+}
+
 enum { site = 200 };
 static float flat_roofs(int i, int j)
 {
@@ -198,7 +209,8 @@ static void roofs_stand_where_they_were_far_from_the_origin(void **state)
     CHECK(terrain_options_set(&o, &why, "surface", path) && terrain_options_set(&o, &why, "horizon", "1") &&
           terrain_options_set(&o, &why, "vertical", "ellipsoid") && terrain_options_set(&o, &why, "spacing", "1") &&
           terrain_options_set(&o, &why, "origin", "46.01,11") && terrain_options_set(&o, &why, "buildings", geojson));
-    CHECK(!terrain_options_set(&o, &why, "buildings", "/tmp/a.txt"));
+    CHECK(!terrain_options_set(&o, &why, "buildings", "/tmp/a.txt") &&
+          !terrain_options_set(&o, &why, "buildings", "/tmp/a.geojson,/tmp/b.geojson"));
     assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     Culture culture = read_back(&report, geojson, &store);
@@ -219,7 +231,66 @@ static void roofs_stand_where_they_were_far_from_the_origin(void **state)
         CHECK_NEAR(place.h_m, n ? 200.57 : 201.1, 0.15);
     }
     culture_free(&culture);
+
+    /* made again it is written again, the same; on a stranger's word only within the store's folder */
+    char own[2 * temp_name_size], elsewhere[2 * temp_name_size];
+    snprintf(own, sizeof own, "%s.first", geojson);
+    CHECK(rename(geojson, own) == 0);
+    assert_int_equal(terrain_store_rebuild(out, store.options, false), STATUS_OK);
+    CHECK(same_files(own, geojson));
+    snprintf(elsewhere, sizeof elsewhere, "surface %s\nhorizon 1\nvertical ellipsoid\nbuildings %s-stranger.geojson\n", path,
+             folder);
+    log_set_sink(check_listen, NULL);
+    CHECK(terrain_store_rebuild(out, elsewhere, false) == STATUS_BAD_VALUE && strstr(check_said, "outside its own folder"));
+    log_set_sink(NULL, NULL);
+    snprintf(elsewhere, sizeof elsewhere, "%s-stranger.geojson", folder);
+    CHECK(access(elsewhere, F_OK) != 0);
     store_close(&store);
+}
+
+/* Records written as GeoJSON are the same buildings when they are read. */
+static void records_come_back(void **state)
+{
+    (void)state;
+    char       path[temp_name_size];
+    LocalFrame frame;
+    Culture    culture = {0}, back = {0};
+    CultureReport      report;
+    const CultureFiles from = {.buildings = path, .frame = &frame, .half_m = 1000};
+    assert_int_equal(local_frame_at(&frame, &(Geodetic){0.8, 0.2, 0}), STATUS_OK);
+    path_of(path, "records.geojson");
+    for (int n = 0; n < 30; n++) {
+        const double   x = 40 * (n % 6), y = 40 * (n / 6), a = 0.2 * n, c = cos(a), s = sin(a);
+        const double   corner_m[4][2] = {{x, y}, {x + 14 * c, y + 14 * s}, {x + 14 * c - 9 * s, y + 14 * s + 9 * c},
+                                         {x - 9 * s, y + 9 * c}};
+        const Building b = {.eaves_m = (float)(1.5 + 0.4 * n),
+                            .ridge_m = (float)(1.5 + 0.4 * n + (n % ROOF_SHAPES ? 3 + 0.9 * n : 0)),
+                            .ridge_rad = n == 6 ? 0 : (float)remainder(a + 0.5 * pi_rad * (n % 4), 2 * pi_rad),
+                            .use = (uint8_t)(n % BUILDING_USES),
+                            .roof = (uint8_t)(n % ROOF_SHAPES),
+                            .wall_fabric = (uint8_t)(n % FABRIC_TILE),
+                            .roof_fabric = (uint8_t)(FABRIC_TILE + n % (FABRICS - FABRIC_TILE)),
+                            .levels = (uint8_t)(1 + n % 5),
+                            .heated = n % 2,
+                            .chimneys = (uint8_t)(n % 4)};
+        assert_int_equal(culture_add_building(&culture, &b, corner_m, 4), STATUS_OK);
+    }
+    assert_int_equal(culture_write_geojson(path, &culture, &frame), STATUS_OK);
+    assert_int_equal(culture_open(&back, &report, &from), STATUS_OK);
+    CHECK(culture.buildings == 30 && back.buildings == 30 && report.mended == 0 && report.unread == 0);
+    for (int n = 0; n < 30; n++) {
+        const Building *a = &culture.building[n], *b = &back.building[n];
+        CHECK(a->corners == b->corners && a->use == b->use && a->roof == b->roof && a->wall_fabric == b->wall_fabric &&
+              a->roof_fabric == b->roof_fabric && a->levels == b->levels && a->heated == b->heated &&
+              a->chimneys == b->chimneys);
+        CHECK_NEAR((double)b->eaves_m, (double)a->eaves_m, 1e-3);
+        CHECK_NEAR((double)b->ridge_m, (double)a->ridge_m, 1e-3);
+        CHECK_NEAR((double)b->ridge_rad, (double)a->ridge_rad, 1e-3);
+        for (int k = 0; k < a->corners; k++)
+            for (int i = 0; i < 2; i++)
+                CHECK_NEAR(back.corner_m[b->first_corner + k][i], culture.corner_m[a->first_corner + k][i], 1e-3);
+    }
+    culture_free(&culture), culture_free(&back);
 }
 
 /* ---- real lidar -------------------------------------------------------------------------------------- */
@@ -466,6 +537,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strips_and_threads_give_the_same_buildings),
         cmocka_unit_test(roofs_stand_where_they_were_far_from_the_origin),
+        cmocka_unit_test(records_come_back),
         cmocka_unit_test(houses_of_real_lidar),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
