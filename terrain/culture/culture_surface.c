@@ -78,6 +78,39 @@ static Patch fill_patch(Patches *p, size_t first, int32_t from, int32_t number, 
     return patch;
 }
 
+/* Whether a patch is nowhere three cells wide. */
+static bool is_thin(const Patches *p, const Patch *patch)
+{
+    for (int y = patch->y0 + 1; y < patch->y1; y++)
+        for (int x = patch->x0 + 1; x < patch->x1; x++) {
+            bool whole = true;
+            for (int k = 0; k < 9 && whole; k++)
+                whole = p->of[(size_t)(y + k / 3 - 1) * (size_t)p->nx + (size_t)(x + k % 3 - 1)] == patch->number;
+            if (whole) return false;
+        }
+    return true;
+}
+
+/* Whether a patch is the edge of another roof: cells that are partly roof and partly ground lie between both in height
+ * and can be a patch of their own. It is thin, and another roof lies beside at least a third of its cells. */
+static bool is_edge(const Patches *p, const Patch *patch)
+{
+    int beside = 0;
+    if (!is_thin(p, patch)) return false;
+    for (int y = patch->y0; y <= patch->y1; y++)
+        for (int x = patch->x0; x <= patch->x1; x++) {
+            const size_t c = (size_t)y * (size_t)p->nx + (size_t)x;
+            if (p->of[c] != patch->number) continue;
+            const int32_t near[4] = {x > 0 ? p->of[c - 1] : 0, x + 1 < p->nx ? p->of[c + 1] : 0,
+                                     y > 0 ? p->of[c - (size_t)p->nx] : 0,
+                                     y + 1 < p->ny ? p->of[c + (size_t)p->nx] : 0};
+            bool          other = false;
+            for (int k = 0; k < 4; k++) other |= near[k] != 0 && near[k] != patch->number;
+            beside += other;
+        }
+    return 3 * beside >= patch->cells;
+}
+
 /* ---- patches of several heights ------------------------------------------------------------------------- */
 
 /* The height that parts a patch's cells best into two groups (Otsu 1979). */
@@ -163,13 +196,22 @@ static void consider(RoofFit *best, const RoofFit *other)
     if (other->ridge_m - other->eaves_m >= least_rise_m && other->rms_m < better * best->rms_m) *best = *other;
 }
 
+static int by_height(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
 static RoofFit fit_roof(const Roof *r, double *x)
 {
     double  a, b, rms;
     RoofFit best = {.shape = ROOF_FLAT};
     for (int k = 0; k < r->count; k++) x[k] = 0;
     fit_line(&a, &b, &rms, r->count, x, r->z_m);
-    best.eaves_m = best.ridge_m = a, best.rms_m = fmax(rms, 0.02);
+    memcpy(x, r->z_m, (size_t)r->count * sizeof *x);
+    qsort(x, (size_t)r->count, sizeof *x, by_height);
+    /* a flat roof lies where most of its cells are, not parapets and what stands on it */
+    best.eaves_m = best.ridge_m = x[r->count / 2], best.rms_m = fmax(rms, 0.02);
     for (int axis = 0; axis < 2; axis++) { /* gables: the ridge along that axis */
         const double *off = axis ? r->u_m : r->v_m, half = r->half_m[1 - axis];
         for (int k = 0; k < r->count; k++) x[k] = fabs(off[k]);
@@ -262,7 +304,7 @@ static bool cut_patch(Work *w, const Patch *patch)
         if (p->of[c] != patch->number) continue;
         Patch piece = fill_patch(p, c, patch->number, ++p->count, same_side, &parting);
         piece.cuts = patch->cuts + 1;
-        if (piece.cells >= w->least_cells) w->patch[w->patch_count++] = piece;
+        if (piece.cells >= w->least_cells && !is_thin(p, &piece)) w->patch[w->patch_count++] = piece;
         else small = -1, fill_patch(p, piece.first, piece.number, small, same_side, &parting);
     }
     if (small) give_away(p, patch->first, patch->last, small);
@@ -444,7 +486,7 @@ Status culture_add_surface(Culture *culture, const SurfaceParts *parts, const Su
     for (size_t c = 0; c < n && status == STATUS_OK; c++) {
         if (window.of[c] != unseen) continue;
         const Patch patch = fill_patch(&window, c, unseen, ++window.count, goes_on, parts);
-        if (patch.cells >= w->least_cells) status = take_patch(w, &window, &patch, parts);
+        if (patch.cells >= w->least_cells && !is_edge(&window, &patch)) status = take_patch(w, &window, &patch, parts);
     }
     if (w) free_box(w);
     free(window.of), free(window.todo), free(w);
