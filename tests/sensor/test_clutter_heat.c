@@ -75,7 +75,7 @@ static const Want want[] = {
     {"lorry", "exhaust", idles, 80, 350, "as the car's (Heywood)"},
     {"van", "bonnet", idles, 3, 70, "as the car's"},
     {"van", "exhaust", idles, 80, 350, "as the car's (Heywood)"},
-    {"semi_trailer", "body", cold, -6, 45, "light sheet in the sun: up to 45 K above the air (Levinson et al. 2011)"},
+    {"semi_trailer", "box", cold, -6, 45, "light sheet in the sun: up to 45 K above the air (Levinson et al. 2011)"},
     {"bulldozer", "engine", works, 3, 80, "as the tractor's bonnet"},
     {"bulldozer", "exhaust", works, 80, 350, "as the tractor's"},
     {"excavator", "engine_deck", works, 3, 80, "as the tractor's bonnet"},
