@@ -334,9 +334,9 @@ static void table_is_whole(const char *name, const bool want[CLUTTER_CLASSES])
 static void the_tables_that_are_shipped(void **state)
 {
     static const bool rear[CLUTTER_CLASSES] = {
-        [CLUTTER_CAR] = true,    [CLUTTER_VAN] = true,     [CLUTTER_LORRY] = true, [CLUTTER_GENERATOR] = true,
+        [CLUTTER_CAR] = true,     [CLUTTER_VAN] = true,     [CLUTTER_LORRY] = true, [CLUTTER_GENERATOR] = true,
         [CLUTTER_MACHINE] = true, [CLUTTER_TRAILER] = true, [CLUTTER_FIRE] = true,  [CLUTTER_HEAP] = true,
-        [CLUTTER_WRECK] = true,  [CLUTTER_CRATES] = true,  [CLUTTER_TENT] = true};
+        [CLUTTER_WRECK] = true,   [CLUTTER_CRATES] = true,  [CLUTTER_TENT] = true};
     bool all[CLUTTER_CLASSES];
     (void)state;
     for (int class = 0; class < CLUTTER_CLASSES; class ++) all[class] = true;
@@ -382,10 +382,11 @@ static void rear_area_is_warm(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(as_dense_as_the_table),     cmocka_unit_test(as_many_by_ways_and_plots),
-        cmocka_unit_test(states_are_shared_out),     cmocka_unit_test(stands_on_the_ground),
-        cmocka_unit_test(squares_fit_together),      cmocka_unit_test(limits_hold),
-        cmocka_unit_test(the_tables_that_are_shipped), cmocka_unit_test(tables_by_name), cmocka_unit_test(rear_area_is_warm),
+        cmocka_unit_test(as_dense_as_the_table),       cmocka_unit_test(as_many_by_ways_and_plots),
+        cmocka_unit_test(states_are_shared_out),       cmocka_unit_test(stands_on_the_ground),
+        cmocka_unit_test(squares_fit_together),        cmocka_unit_test(limits_hold),
+        cmocka_unit_test(the_tables_that_are_shipped), cmocka_unit_test(tables_by_name),
+        cmocka_unit_test(rear_area_is_warm),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
