@@ -1,4 +1,5 @@
-/* entities/scenery/clutter_table.c: what stands about, how densely and how warm: etc/clutter.csv and others of its format. */
+/* entities/scenery/clutter_table.c: what stands about, how densely and how warm: etc/clutter.csv and others of its
+ * format. */
 #include "entities/scenery/scenery_clutter_private.h"
 #include "entities/shapes/parametric.h"
 

@@ -8,7 +8,8 @@ static const double widest_square_m = 65536;
 
 ClutterConfig clutter_default_config(void)
 {
-    return (ClutterConfig){.density = 1, .most = 20000, .most_driving = 256, .most_states = 256, .sag_m = 0.01};
+    return (ClutterConfig){
+        .density = 1, .most = clutter_most_objects, .most_driving = 256, .most_states = 256, .sag_m = 0.01};
 }
 
 /* ---- numbers ------------------------------------------------------------------------------------ */

@@ -37,7 +37,7 @@ typedef struct ClutterConfig {
     double sag_m;        /* chord error of the shapes */
 } ClutterConfig;
 
-/* Density 1, 20000 objects, 256 that drive, 256 states, 0.01 m; the rest is zero. */
+/* Density 1, 100000 objects, 256 that drive, 256 states, 0.01 m; the rest is zero. */
 ClutterConfig clutter_default_config(void);
 
 /* The file of a table: countryside and rear_area are those of etc; what else there is, with a `.` or `/` in it, is a
