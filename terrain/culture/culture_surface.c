@@ -46,9 +46,9 @@ typedef bool Joins(const void *user, const Patches *p, int x, int y, int dx, int
 /* A patch of cells that hold `from`, joined by sides where `joins` says so. */
 typedef struct Patch {
     int32_t number;
-    size_t  first, last; /* least and greatest index of its cells */
-    int     cells, cuts;      /* how often it was cut off one that no shape fits */
-    int     x0, y0, x1, y1;   /* box of its cells, inclusive */
+    size_t  first, last;    /* least and greatest index of its cells */
+    int     cells, cuts;    /* how often it was cut off one that no shape fits */
+    int     x0, y0, x1, y1; /* box of its cells, inclusive */
 } Patch;
 
 static Patch fill_patch(Patches *p, size_t first, int32_t from, int32_t number, Joins *joins, const void *user)
@@ -104,7 +104,7 @@ static bool is_edge(const Patches *p, const Patch *patch)
             const int32_t near[4] = {x > 0 ? p->of[c - 1] : 0, x + 1 < p->nx ? p->of[c + 1] : 0,
                                      y > 0 ? p->of[c - (size_t)p->nx] : 0,
                                      y + 1 < p->ny ? p->of[c + (size_t)p->nx] : 0};
-            bool          other = false;
+            bool other = false;
             for (int k = 0; k < 4; k++) other |= near[k] != 0 && near[k] != patch->number;
             beside += other;
         }
@@ -413,7 +413,8 @@ static bool always(const void *user, const Patches *p, int x, int y, int dx, int
 }
 
 /* The buildings of those cells of a patch of the window that lie in a box. */
-static Status take_box(Work *w, const Patches *window, int32_t number, const SurfaceParts *parts, const SurfaceCore *box)
+static Status take_box(Work *w, const Patches *window, int32_t number, const SurfaceParts *parts,
+                       const SurfaceCore *box)
 {
     const int    nx = box->i1 - box->i0, ny = box->j1 - box->j0;
     const size_t cells = (size_t)nx * (size_t)ny;
@@ -422,9 +423,8 @@ static Status take_box(Work *w, const Patches *window, int32_t number, const Sur
     w->x0 = box->i0, w->y0 = box->j0;
     w->patches.nx = nx, w->patches.ny = ny, w->patches.count = 0, w->patch_count = 0;
     for (size_t c = 0; c < cells; c++) {
-        const size_t at =
-            ((size_t)box->j0 + c / (size_t)nx) * (size_t)window->nx + (size_t)box->i0 + c % (size_t)nx;
-        const bool of = window->of[at] == number;
+        const size_t at = ((size_t)box->j0 + c / (size_t)nx) * (size_t)window->nx + (size_t)box->i0 + c % (size_t)nx;
+        const bool   of = window->of[at] == number;
         w->patches.of[c] = of ? unseen : 0;
         w->parts.kind[c] = of ? CELL_BUILDING : CELL_BARE;
         w->parts.roof_m[c] = of ? parts->roof_m[at] : NAN;
@@ -461,8 +461,10 @@ static Status take_patch(Work *w, const Patches *window, const Patch *patch, con
     const int64_t column = w->model->column, row = w->model->row;
     Status        status = STATUS_OK;
     for (int64_t j = floor_to(row + patch->y0, tile); j <= row + patch->y1 && status == STATUS_OK; j += tile)
-        for (int64_t i = floor_to(column + patch->x0, tile); i <= column + patch->x1 && status == STATUS_OK; i += tile) {
-            const SurfaceCore box = {(int)fmax((double)(i - column), patch->x0), (int)fmax((double)(j - row), patch->y0),
+        for (int64_t i = floor_to(column + patch->x0, tile); i <= column + patch->x1 && status == STATUS_OK;
+             i += tile) {
+            const SurfaceCore box = {(int)fmax((double)(i - column), patch->x0),
+                                     (int)fmax((double)(j - row), patch->y0),
                                      (int)fmin((double)(i - column + tile), patch->x1 + 1),
                                      (int)fmin((double)(j - row + tile), patch->y1 + 1)};
             status = take_box(w, window, patch->number, parts, &box);

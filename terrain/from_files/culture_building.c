@@ -139,7 +139,8 @@ static HeightFrom set_heights(Building *b, const CultureFacts *f, double area_m2
         eaves_m = fmin(eaves_said_m, height_m), rise_m = height_m - eaves_m, from = HEIGHT_FROM_FILE;
     } else if (isnan(height_m) && !isnan(eaves_said_m)) {
         eaves_m = eaves_said_m, from = HEIGHT_FROM_FILE;
-    } else if (!isnan(height_m)) { /* of everything: the roof takes what its shape wants, and leaves the walls their share */
+    } else if (!isnan(height_m)) { /* of everything: the roof takes what its shape wants, and leaves the walls their
+                                      share */
         eaves_m = fmax(height_m - rise_m, fmin(fmax(0.5 * height_m, least_m), height_m));
         rise_m = height_m - eaves_m, from = HEIGHT_FROM_FILE;
     }
@@ -182,6 +183,9 @@ void culture_building_make(Building *out, HeightFrom *from, int *mended, const C
     b.roof_fabric = (uint8_t)(f->cover >= 0 ? f->cover : cover_of(use, (RoofShape)b.roof));
     b.damage = f->ruined ? 2 : 0;
     b.heated = f->heated >= 0 ? f->heated : (use == BUILDING_HOUSE || use == BUILDING_FLATS) && !f->ruined;
-    b.chimneys = f->chimneys >= 0 && f->chimneys <= 4 ? (uint8_t)f->chimneys : use == BUILDING_HOUSE ? 1 : use == BUILDING_FLATS && b.roof != ROOF_FLAT ? 2 : 0;
+    b.chimneys = f->chimneys >= 0 && f->chimneys <= 4           ? (uint8_t)f->chimneys
+                 : use == BUILDING_HOUSE                        ? 1
+                 : use == BUILDING_FLATS && b.roof != ROOF_FLAT ? 2
+                                                                : 0;
     *out = b;
 }

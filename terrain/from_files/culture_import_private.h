@@ -86,10 +86,11 @@ typedef struct CultureFacts {
     int                use, roof, wall, cover, ground, plant;
     int                roof_way; /* 0: along, 1: across */
     int                heated;   /* 0, 1 */
-    double             height_m, eaves_m, part_height_m, ridge_rad, chimneys, levels, roof_height_m, roof_levels, width_m, lanes, direction_rad;
-    bool               bridge, hidden, ruined, marked;
-    int                unread; /* numbers that are none */
-    uint64_t           id;     /* 0: none */
+    double height_m, eaves_m, part_height_m, ridge_rad, chimneys, levels, roof_height_m, roof_levels, width_m, lanes,
+        direction_rad;
+    bool     bridge, hidden, ruined, marked;
+    int      unread; /* numbers that are none */
+    uint64_t id;     /* 0: none */
 } CultureFacts;
 
 void culture_facts(CultureFacts *out, const CultureRules *rules, int tags, const char *const *name,

@@ -48,9 +48,10 @@ static const TableColumn columns[] = {
     {"key", TABLE_NAME, TABLE_AT(CultureRule, key), .key = false},
     {"value", TABLE_NAME, TABLE_AT(CultureRule, value), .key = false},
     {"makes", TABLE_CHOICE, TABLE_AT(CultureRule, makes),
-     .choices = "building, use, line, point, tree, tree_row, nothing, height, part_height, eaves, levels, "
-                "roof_height, roof_levels, width, lanes, direction, roof, roof_way, ridge, chimneys, heated, wall, cover, ground, plant, bridge, hidden, "
-                "ruined, marked, id, tags"},
+     .choices =
+         "building, use, line, point, tree, tree_row, nothing, height, part_height, eaves, levels, "
+         "roof_height, roof_levels, width, lanes, direction, roof, roof_way, ridge, chimneys, heated, wall, cover, ground, plant, bridge, hidden, "
+         "ruined, marked, id, tags"},
     {"kind", TABLE_NAME, TABLE_AT(CultureRule, kind_name), .absent = TABLE_EMPTY},
     {"height_m", TABLE_DOUBLE, TABLE_AT(CultureRule, height_m), .low = 0, .high = 850, .absent = TABLE_EMPTY},
     {"width_m", TABLE_DOUBLE, TABLE_AT(CultureRule, width_m), .low = 0, .high = 100, .absent = TABLE_EMPTY},

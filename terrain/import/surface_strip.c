@@ -215,9 +215,9 @@ Status surface_strip_make(SurfaceStrip *out, const SurfaceSources *from, int row
     w.crowns = calloc((size_t)w.windows, sizeof *w.crowns);
     w.status = calloc((size_t)w.windows, sizeof *w.status);
     if (from->buildings) w.culture = calloc((size_t)w.windows, sizeof *w.culture);
-    const bool whole = strip.h_m && strip.kind && strip.canopy_m && w.crown && w.crowns && w.status &&
-                       (w.culture || !from->buildings);
-    Status     status = whole ? STATUS_OK : STATUS_NO_MEMORY;
+    const bool whole =
+        strip.h_m && strip.kind && strip.canopy_m && w.crown && w.crowns && w.status && (w.culture || !from->buildings);
+    Status status = whole ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = read_models(&w, from);
     if (status == STATUS_OK && from->photo) status = read_colours(&w, from);
     if (status == STATUS_OK && !pool_run_unless_stopped(from->pool, w.windows, take_window, &w)) status = STATUS_IO;

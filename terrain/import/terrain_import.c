@@ -163,9 +163,10 @@ static Status look_at_buildings(const StoreImport *m)
     static const double most_m = 2;
     if (!*m->o->buildings) return STATUS_OK;
     if (m->level.spacing_m > most_m) {
-        log_error("terrain import: --buildings: outlines need posts at most %.3g m apart, and these are %.3g; --spacing 2, "
-                  "or leave it out",
-                  most_m, m->level.spacing_m);
+        log_error(
+            "terrain import: --buildings: outlines need posts at most %.3g m apart, and these are %.3g; --spacing 2, "
+            "or leave it out",
+            most_m, m->level.spacing_m);
         return STATUS_BAD_VALUE;
     }
     if (output_check(m->o->buildings, 0) == 0) return STATUS_OK;
@@ -228,11 +229,12 @@ static Status plan(StoreImport *m)
              e.ellipsoidal ? "files above the ellipsoid"
                            : "files above the geoid (EGM96 unless --geoid), converted at each post");
     p->vertical_datum = m->datum;
-    snprintf(m->notes, sizeof m->notes, "%s%s%s%s", !m->surface ? "terrain model as it is" : "surface model taken apart ",
+    snprintf(m->notes, sizeof m->notes, "%s%s%s%s",
+             !m->surface ? "terrain model as it is" : "surface model taken apart ",
              !m->surface  ? ""
              : m->terrain ? "with the terrain model beside it: bare ground, crowns listed"
                           : "by its own shape: bare ground, crowns listed",
-             !m->surface         ? ""
+             !m->surface        ? ""
              : *m->o->buildings ? ", buildings beside it as records"
                                 : ", roofs as blocks",
              "; where files overlap the finest wins, of equals the one given first");

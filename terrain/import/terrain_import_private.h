@@ -55,12 +55,12 @@ typedef struct SurfaceSources {
 
 /* Rows of level 0, [rows][nx], and crowns in ENU, which are allocated. */
 typedef struct SurfaceStrip {
-    float   *h_m; /* heights above the ellipsoid of bare ground, and of roofs unless buildings are records */
+    float   *h_m;      /* heights above the ellipsoid of bare ground, and of roofs unless buildings are records */
     uint8_t *kind;     /* CellKind */
     float   *canopy_m; /* height of the surface above bare ground where kind is CELL_TREE; 0 elsewhere */
     int      crowns;
     Crown   *crown;
-    Culture  culture; /* buildings in ENU, their base_m above the ellipsoid */
+    Culture  culture;              /* buildings in ENU, their base_m above the ellipsoid */
     long     voids, voids_coarser; /* posts filled from their surroundings, and from a coarser file */
 } SurfaceStrip;
 
@@ -102,8 +102,8 @@ typedef struct StoreImport {
 
 /* Adds all records of buildings. */
 Status import_buildings_add(Culture *to, const Culture *from);
-/* Writes them as GeoJSON, from south to north, on the floors that the ground of the store gives them, with the eaves and
- * ridges where they were. */
+/* Writes them as GeoJSON, from south to north, on the floors that the ground of the store gives them, with the eaves
+ * and ridges where they were. */
 Status import_buildings_write(StoreImport *m, const TerrainStore *store);
 
 /* ---- terrain_cover.c ---- */

@@ -126,7 +126,8 @@ bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, 
 const char *terrain_options_fault(const TerrainOptions *o)
 {
     if (!*o->elevation && !*o->surface) return "names no elevation: give a terrain model, or --surface";
-    if (*o->buildings && !*o->surface) return "names a file of buildings, which are found in surface models: give --surface";
+    if (*o->buildings && !*o->surface)
+        return "names a file of buildings, which are found in surface models: give --surface";
     return NULL;
 }
 

@@ -1,30 +1,8 @@
 /* Buildings of surface models as records: those of a town that the test built, wherever windows and strips meet and far
- * from the origin; and of a real lidar model, against its own heights and edges. */
-#include "tests/check.h"
+ * from the origin; read as they were written. */
+#include "tests/terrain/buildings_lab.h"
 
-#include "terrain/from_files/culture_import.h"
 #include "terrain/import/terrain_import_private.h"
-
-#include <unistd.h>
-
-static char folder[temp_path_size];
-
-static int set_up(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/pitviper-buildings-XXXXXX");
-    return mkdtemp(folder) ? 0 : 1;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    char line[temp_path_size + 16];
-    snprintf(line, sizeof line, "rm -rf %s", folder);
-    return system(line);
-}
-
-static void path_of(char out[temp_name_size], const char *name) { snprintf(out, temp_name_size, "%s/%s", folder, name); }
 
 /* An ESRI grid of floats in degrees; row 0 northernmost. */
 static void write_grid(char out[temp_name_size], const char *name, int nx, int ny, const double south_west_deg[2],
@@ -58,7 +36,7 @@ static void write_grid(char out[temp_name_size], const char *name, int nx, int n
 
 /* ---- windows and strips ------------------------------------------------------------------------------ */
 
-enum { apart = 24, town_nx = 1152, town_ny = 792 }; /* cells of 2 m; houses every 24 of them */
+enum { apart = 24, town_nx = 1152, town_ny = 792 };               /* cells of 2 m; houses every 24 of them */
 static const int long_j[2] = {268, 276}, long_i[2] = {944, 1104}; /* 320 m, across where windows meet */
 
 static bool in_long(int i, int j) { return i >= long_i[0] && i < long_i[1] && j >= long_j[0] && j < long_j[1]; }
@@ -126,17 +104,16 @@ static void strips_and_threads_give_the_same_buildings(void **state)
     SurfaceSources from = {.surface = stream, .frame = &frame, .buildings = true};
     Culture        whole = buildings_by(&from, level.ny, level.ny);
     from.pool = pool;
-    Culture      part = buildings_by(&from, level.ny, 150);
-    const int    houses = houses_of_town();
-    double       long_m2 = 0;
-    int          pieces = 0;
+    Culture   part = buildings_by(&from, level.ny, 150);
+    const int houses = houses_of_town();
+    double    long_m2 = 0;
+    int       pieces = 0;
     print_message("%d buildings, in strips %d; %d houses and the long one\n", whole.buildings, part.buildings, houses);
     CHECK(level.nx > 1024 && whole.buildings == part.buildings);
     for (int n = 0; n < whole.buildings; n++) {
         Building a = whole.building[n], b = part.building[n];
         const double(*p)[2] = (const double(*)[2])whole.corner_m + a.first_corner;
-        CHECK(a.corners == b.corners &&
-              memcmp(p, part.corner_m + b.first_corner, (size_t)a.corners * sizeof *p) == 0);
+        CHECK(a.corners == b.corners && memcmp(p, part.corner_m + b.first_corner, (size_t)a.corners * sizeof *p) == 0);
         b.first_corner = a.first_corner;
         CHECK(memcmp(&a, &b, sizeof a) == 0);
         if (a.eaves_m < 8) continue;
@@ -156,23 +133,6 @@ static void strips_and_threads_give_the_same_buildings(void **state)
 }
 
 /* ---- far from the origin ----------------------------------------------------------------------------- */
-
-static double ground_of(void *user, double x_m, double y_m)
-{
-    return elevation_height(&((const TerrainStore *)user)->elevation, x_m, y_m, NULL);
-}
-
-static Culture read_back(CultureReport *report, const char *path, const TerrainStore *store)
-{
-    const CultureFiles from = {.buildings = path,
-                               .frame = &store->frame,
-                               .ground = ground_of,
-                               .user = (void *)store,
-                               .half_m = 30000};
-    Culture            culture = {0};
-    assert_int_equal(culture_open(&culture, report, &from), STATUS_OK);
-    return culture;
-}
 
 static bool same_files(const char *a, const char *b)
 {
@@ -238,10 +198,16 @@ static void roofs_stand_where_they_were_far_from_the_origin(void **state)
     CHECK(rename(geojson, own) == 0);
     assert_int_equal(terrain_store_rebuild(out, store.options, false), STATUS_OK);
     CHECK(same_files(own, geojson));
-    snprintf(elsewhere, sizeof elsewhere, "surface %s\nhorizon 1\nvertical ellipsoid\nbuildings %s-stranger.geojson\n", path,
-             folder);
+    snprintf(elsewhere, sizeof elsewhere, "surface %s\nhorizon 1\nvertical ellipsoid\nbuildings %s-stranger.geojson\n",
+             path, folder);
+    FILE *letter = fopen(geojson, "w");
+    CHECK(letter && fputs("{\"type\": \"FeatureCollection\"}", letter) >= 0 && fclose(letter) == 0);
     log_set_sink(check_listen, NULL);
-    CHECK(terrain_store_rebuild(out, elsewhere, false) == STATUS_BAD_VALUE && strstr(check_said, "outside its own folder"));
+    CHECK(terrain_store_rebuild(out, store.options, false) == STATUS_BAD_VALUE &&
+          strstr(check_said, "no file of an import"));
+    CHECK(!same_files(own, geojson));
+    CHECK(terrain_store_rebuild(out, elsewhere, false) == STATUS_BAD_VALUE &&
+          strstr(check_said, "outside its own folder"));
     log_set_sink(NULL, NULL);
     snprintf(elsewhere, sizeof elsewhere, "%s-stranger.geojson", folder);
     CHECK(access(elsewhere, F_OK) != 0);
@@ -252,17 +218,17 @@ static void roofs_stand_where_they_were_far_from_the_origin(void **state)
 static void records_come_back(void **state)
 {
     (void)state;
-    char       path[temp_name_size];
-    LocalFrame frame;
-    Culture    culture = {0}, back = {0};
+    char               path[temp_name_size];
+    LocalFrame         frame;
+    Culture            culture = {0}, back = {0};
     CultureReport      report;
     const CultureFiles from = {.buildings = path, .frame = &frame, .half_m = 1000};
     assert_int_equal(local_frame_at(&frame, &(Geodetic){0.8, 0.2, 0}), STATUS_OK);
     path_of(path, "records.geojson");
     for (int n = 0; n < 30; n++) {
-        const double   x = 40 * (n % 6), y = 40 * (n / 6), a = 0.2 * n, c = cos(a), s = sin(a);
-        const double   corner_m[4][2] = {{x, y}, {x + 14 * c, y + 14 * s}, {x + 14 * c - 9 * s, y + 14 * s + 9 * c},
-                                         {x - 9 * s, y + 9 * c}};
+        const double x = 40 * (n % 6), y = 40 * (n / 6), a = 0.2 * n, c = cos(a), s = sin(a);
+        const double corner_m[4][2] = {
+            {x, y}, {x + 14 * c, y + 14 * s}, {x + 14 * c - 9 * s, y + 14 * s + 9 * c}, {x - 9 * s, y + 9 * c}};
         const Building b = {.eaves_m = (float)(1.5 + 0.4 * n),
                             .ridge_m = (float)(1.5 + 0.4 * n + (n % ROOF_SHAPES ? 3 + 0.9 * n : 0)),
                             .ridge_rad = n == 6 ? 0 : (float)remainder(a + 0.5 * pi_rad * (n % 4), 2 * pi_rad),
@@ -293,252 +259,12 @@ static void records_come_back(void **state)
     culture_free(&culture), culture_free(&back);
 }
 
-/* ---- real lidar -------------------------------------------------------------------------------------- */
-
-/* Height of a building's roof over a place within its outline, from what its record says (culture.h). */
-static double roof_z(const Culture *c, const Building *b, double x_m, double y_m)
-{
-    double       low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, wall_m = INFINITY, inner_m = 0;
-    const double e[2] = {cos((double)b->ridge_rad), sin((double)b->ridge_rad)};
-    for (int k = 0; k < b->corners; k++) {
-        const double *p = c->corner_m[b->first_corner + k], *q = c->corner_m[b->first_corner + (k + 1) % b->corners];
-        const double  at[2] = {e[0] * p[0] + e[1] * p[1], e[0] * p[1] - e[1] * p[0]};
-        for (int i = 0; i < 2; i++) low[i] = fmin(low[i], at[i]), high[i] = fmax(high[i], at[i]);
-        const double dx = q[0] - p[0], dy = q[1] - p[1];
-        const double t = clamp(((x_m - p[0]) * dx + (y_m - p[1]) * dy) / (dx * dx + dy * dy), 0, 1);
-        wall_m = fmin(wall_m, hypot(x_m - p[0] - t * dx, y_m - p[1] - t * dy));
-    }
-    inner_m = 0.5 * fmin(high[0] - low[0], high[1] - low[1]);
-    const double u = e[0] * x_m + e[1] * y_m, v = e[0] * y_m - e[1] * x_m;
-    const double rise_m = (double)(b->ridge_m - b->eaves_m);
-    double       share = 0;
-    if (b->roof == ROOF_GABLED) share = 1 - fabs(v - 0.5 * (low[1] + high[1])) / (0.5 * (high[1] - low[1]));
-    else if (b->roof == ROOF_SKILLION) share = (high[0] - u) / (high[0] - low[0]);
-    else if (b->roof != ROOF_FLAT) share = wall_m / inner_m;
-    return (double)(b->base_m + b->eaves_m) + rise_m * clamp(share, 0, 1);
-}
-
-/* Posts of one of the files on a store's level 0, ENU z. */
-typedef struct Posts {
-    StreamLevel level;
-    float      *z_m;
-} Posts;
-
-static Posts posts_of(const char *path, const LocalFrame *frame, const ElevationStream *like, ElevationStream **stream,
-                      Pool *pool)
-{
-    Posts                p;
-    const ElevationFiles files = {.paths = path, .geoid_path = "", .horizon_m = 1000};
-    assert_int_equal(elevation_stream_open(stream, &files, frame, like, pool), STATUS_OK);
-    assert_int_equal(elevation_stream_begin(*stream, 0), STATUS_OK);
-    elevation_stream_level(&p.level, *stream, 0);
-    p.z_m = malloc((size_t)p.level.nx * (size_t)p.level.ny * sizeof *p.z_m);
-    CHECK(p.z_m);
-    assert_int_equal(elevation_stream_heights(*stream, 0, p.level.ny, p.z_m, NULL, false), STATUS_OK);
-    assert_int_equal(elevation_stream_bend(*stream, 0, p.level.ny, p.z_m), STATUS_OK);
-    return p;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double quantile(double *value, int count, double share)
-{
-    qsort(value, (size_t)count, sizeof *value, by_size);
-    return count ? value[(int)fmin(share * count, count - 1)] : NAN;
-}
-
-/* Both models on the posts of a store. */
-typedef struct Judge {
-    Posts surface, terrain;
-} Judge;
-
-/* Whether a post is more than 2 m over the terrain model, and the surface there. */
-static bool is_high(const Judge *j, int x, int y, double *z_m)
-{
-    if (x < 0 || y < 0 || x >= j->surface.level.nx || y >= j->surface.level.ny) return false;
-    const size_t n = (size_t)y * (size_t)j->surface.level.nx + (size_t)x;
-    *z_m = (double)j->surface.z_m[n];
-    return (double)(j->surface.z_m[n] - j->terrain.z_m[n]) > 2;
-}
-
-/* Distance of a place, in cells from the middle of cell (0, 0), from the surface's edges, at most 8: the boundary of high
- * cells, and steps of more than 1 m among them. */
-static double off_edge(const Judge *j, double u, double v)
-{
-    enum { reach = 8 };
-    double least = reach;
-    for (int y = (int)floor(v) - reach; y <= (int)floor(v) + reach; y++)
-        for (int x = (int)floor(u) - reach; x <= (int)floor(u) + reach; x++)
-            for (int way = 0; way < 2; way++) { /* the side between a cell and its eastern, northern neighbour */
-                double     a_m = 0, b_m = 0;
-                const bool a = is_high(j, x, y, &a_m), b = is_high(j, x + !way, y + way, &b_m);
-                if (a == b && !(a && fabs(a_m - b_m) > 1)) continue;
-                const double du = way ? fmax(fabs(u - x) - 0.5, 0) : u - x - 0.5;
-                const double dv = way ? v - y - 0.5 : fmax(fabs(v - y) - 0.5, 0);
-                least = fmin(least, hypot(du, dv));
-            }
-    return least;
-}
-
-static bool is_in(const Culture *c, const Building *b, double x_m, double y_m)
-{
-    bool in = false;
-    for (int k = 0; k < b->corners; k++) {
-        const double *p = c->corner_m[b->first_corner + k], *q = c->corner_m[b->first_corner + (k + 1) % b->corners];
-        if ((p[1] > y_m) != (q[1] > y_m) && x_m < p[0] + (y_m - p[1]) / (q[1] - p[1]) * (q[0] - p[0])) in = !in;
-    }
-    return in;
-}
-
-/* The building whose roof is the highest over each post, as it is seen from above; -1: none. */
-static void fill_tops(int *of, float *top_m, const Culture *c, const StreamLevel *l)
-{
-    for (size_t n = 0; n < (size_t)l->nx * (size_t)l->ny; n++) of[n] = -1, top_m[n] = NAN;
-    for (int n = 0; n < c->buildings; n++) {
-        const Building *b = &c->building[n];
-        double          low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-        for (int k = 0; k < b->corners; k++)
-            for (int i = 0; i < 2; i++) {
-                low[i] = fmin(low[i], c->corner_m[b->first_corner + k][i] / l->spacing_m);
-                high[i] = fmax(high[i], c->corner_m[b->first_corner + k][i] / l->spacing_m);
-            }
-        for (int y = (int)fmax(floor(low[1]) - l->j0, 0); y <= ceil(high[1]) - l->j0 && y < l->ny; y++)
-            for (int x = (int)fmax(floor(low[0]) - l->i0, 0); x <= ceil(high[0]) - l->i0 && x < l->nx; x++) {
-                const double x_m = (l->i0 + x) * l->spacing_m, y_m = (l->j0 + y) * l->spacing_m;
-                const size_t at = (size_t)y * (size_t)l->nx + (size_t)x;
-                if (!is_in(c, b, x_m, y_m)) continue;
-                const float z_m = (float)roof_z(c, b, x_m, y_m);
-                if (!(z_m <= top_m[at])) of[at] = n, top_m[at] = z_m;
-            }
-    }
-}
-
-/* About the stadium, whose stands rise from the ground without an edge: x, y, radius. */
-static const double stadium[3] = {60, 140, 160};
-
-/* What the records of a surface model are worth, by the model itself and a terrain model that was not used. */
-typedef struct Worth {
-    int    buildings; /* with posts of their own */
-    int    right;     /* whose median of roof - surface over them is within 0.5 m */
-    int    close;     /* whose median of |roof - surface| is: where half of a roof is right, not its mean alone */
-    double m2, right_m2;
-    int    points;         /* every 0.5 m of outlines, where no other building is 2 m outside of them */
-    int    free;           /* of these, those that nothing high is 3 m outside of, without the stadium */
-    double *off_m, *free_m; /* their distances from the surface's own edges */
-} Worth;
-
-static void judge_roofs(Worth *w, const Culture *c, const Judge *j, const int *of, const float *top_m)
-{
-    const size_t posts = (size_t)j->surface.level.nx * (size_t)j->surface.level.ny;
-    const double s = j->surface.level.spacing_m;
-    double      *off = malloc(posts * sizeof *off);
-    CHECK(off != NULL);
-    for (int n = 0; n < c->buildings; n++) {
-        int count = 0;
-        for (size_t at = 0; at < posts; at++)
-            if (of[at] == n) off[count++] = (double)(top_m[at] - j->surface.z_m[at]);
-        if (count == 0) continue; /* it lies under others */
-        const bool right = fabs(quantile(off, count, 0.5)) <= 0.5;
-        for (int k = 0; k < count; k++) off[k] = fabs(off[k]);
-        w->close += quantile(off, count, 0.5) <= 0.5;
-        w->buildings++, w->right += right;
-        w->m2 += count * s * s, w->right_m2 += right ? count * s * s : 0;
-    }
-    free(off);
-}
-
-static void judge_outlines(Worth *w, const Culture *c, const Judge *j)
-{
-    enum { most = 1 << 18 };
-    const StreamLevel *l = &j->surface.level;
-    w->off_m = malloc(most * sizeof *w->off_m), w->free_m = malloc(most * sizeof *w->free_m);
-    CHECK(w->off_m && w->free_m);
-    for (int n = 0; n < c->buildings; n++) {
-        const Building *b = &c->building[n];
-        for (int k = 0; k < b->corners; k++) {
-            const double *p = c->corner_m[b->first_corner + k], *q = c->corner_m[b->first_corner + (k + 1) % b->corners];
-            const double  length_m = hypot(q[0] - p[0], q[1] - p[1]);
-            const double  along[2] = {(q[0] - p[0]) / length_m, (q[1] - p[1]) / length_m};
-            for (double t = 0.25; t < length_m && w->points < most; t += 0.5) {
-                const double x_m = p[0] + t * along[0], y_m = p[1] + t * along[1];
-                if (culture_building_at(c, x_m + 2 * along[1], y_m - 2 * along[0], 0) >= 0) continue;
-                const double u = x_m / l->spacing_m - l->i0, v = y_m / l->spacing_m - l->j0;
-                const double off_m = l->spacing_m * off_edge(j, u, v);
-                double       z_m;
-                const int    out[2] = {(int)rint(u + 3 * along[1] / l->spacing_m), (int)rint(v - 3 * along[0] / l->spacing_m)};
-                w->off_m[w->points++] = off_m;
-                if (hypot(x_m - stadium[0], y_m - stadium[1]) < stadium[2]) continue;
-                if (!is_high(j, out[0], out[1], &z_m)) w->free_m[w->free++] = off_m;
-            }
-        }
-    }
-}
-
-/* The distances say nothing of buildings that are missing: the area of the records does. */
-static void houses_of_real_lidar(void **state)
-{
-    (void)state;
-    char             dsm[512], dtm[512], out[temp_name_size], geojson[temp_name_size];
-    const char      *why;
-    TerrainOptions   o;
-    TerrainReport    r;
-    TerrainStore     store;
-    CultureReport    report;
-    Judge            judge = {0};
-    Worth            w = {0};
-    ElevationStream *stream[2];
-    Pool            *pool;
-    if (!reference_path(dsm, "terrain/autzen/autzen_dsm_1m.tif") ||
-        !reference_path(dtm, "terrain/autzen/autzen_dtm_1m.tif"))
-        skip();
-    path_of(out, "autzen.store"), path_of(geojson, "autzen.geojson");
-    assert_int_equal(pool_create(&pool, 2), STATUS_OK);
-    terrain_options_default(&o);
-    CHECK(terrain_options_set(&o, &why, "surface", dsm) && terrain_options_set(&o, &why, "horizon", "1") &&
-          terrain_options_set(&o, &why, "buildings", geojson));
-    assert_int_equal(terrain_import(&r, &o, out, pool, NULL), STATUS_OK);
-    assert_int_equal(store_open(&store, out), STATUS_OK);
-    judge.surface = posts_of(dsm, &store.frame, NULL, &stream[0], pool);
-    judge.terrain = posts_of(dtm, &store.frame, stream[0], &stream[1], pool);
-    Culture            culture = read_back(&report, geojson, &store);
-    const StreamLevel *l = &judge.surface.level;
-    const size_t       posts = (size_t)l->nx * (size_t)l->ny;
-    int               *of = malloc(posts * sizeof *of);
-    float             *top_m = malloc(posts * sizeof *top_m);
-    CHECK(of && top_m && culture.buildings == r.records && culture_index(&culture) == STATUS_OK);
-    fill_tops(of, top_m, &culture, l);
-    judge_roofs(&w, &culture, &judge, of, top_m);
-    judge_outlines(&w, &culture, &judge);
-    const double cells_m2 = r.kind_share[1] * (double)posts * l->spacing_m * l->spacing_m;
-    const double right = (double)w.right / w.buildings, right_m2 = w.right_m2 / w.m2;
-    const double all_m = quantile(w.off_m, w.points, 0.9), free_m = quantile(w.free_m, w.free, 0.9);
-    print_message("%d buildings, %d patches left out, %.0f m2 of %.0f m2 of posts of buildings; roofs within 0.5 m: %.1f %% of "
-                  "the buildings, %.1f %% of their area; half of the roof: %.1f %%\n",
-                  culture.buildings, r.records_left, w.m2, cells_m2, 100 * right, 100 * right_m2,
-                  100.0 * w.close / w.buildings);
-    print_message("outlines: p90 %.2f m from the surface's edges, %.2f where nothing high is outside (%.0f %% of them)\n",
-                  all_m, free_m, 100.0 * w.free / w.points);
-    CHECK(right >= 0.95 && right_m2 >= 0.94 && w.close >= 0.94 * w.buildings);
-    CHECK(w.m2 > 0.9 * cells_m2 && w.m2 < 1.02 * cells_m2);
-    CHECK(free_m <= 1);
-    free(w.off_m), free(w.free_m), free(of), free(top_m), free(judge.surface.z_m), free(judge.terrain.z_m);
-    culture_free(&culture);
-    elevation_stream_close(stream[1]), elevation_stream_close(stream[0]);
-    store_close(&store);
-    pool_destroy(pool);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strips_and_threads_give_the_same_buildings),
         cmocka_unit_test(roofs_stand_where_they_were_far_from_the_origin),
         cmocka_unit_test(records_come_back),
-        cmocka_unit_test(houses_of_real_lidar),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -429,7 +429,8 @@ static int import_command(int argc, char **argv)
     stop_by_signals();
     if (status == STATUS_OK) status = terrain_import(&r, &w->terrain, w->out, pool, &watch);
     log_status(NULL);
-    if (status == STATUS_OK) status = report(w->out, w->terrain.buildings, &r, wall_clock_s() - watching.begun_s, &watching.sources);
+    if (status == STATUS_OK)
+        status = report(w->out, w->terrain.buildings, &r, wall_clock_s() - watching.begun_s, &watching.sources);
     source_lines_free(&watching.sources);
     if (status == STATUS_NO_MEMORY) log_error("terrain import: out of memory; --size takes a part");
     if (r.stopped) log_warn("terrain import: stopped: %s is as it was", w->out);
