@@ -55,7 +55,7 @@ const PlaneRow plane_rows[] = {
     {"truth", "material", PLANE_TRUTH, PLANE_U32, "", "from 1, into material_names; 0: none", "", "material",
      .at = AT(material), .choice = "material", .record = "material", .verdict = "material"},
     {"truth", "instance", PLANE_TRUTH, PLANE_U32, "", "from 1; from 2147483648 low plants; 0: none", bare,
-     "plant: each one has its own number; low plants, which stand only near the sensor, theirs in this frame",
+     "plant: each one has its own number; low plants, which stand only near the sensor, theirs in this frame; where there is a part and no entity, scenery: its object",
      .plants = PLANTS_MAKE, .at = AT(instance), .choice = "instance"},
     {"truth", "cover", PLANE_TRUTH, PLANE_U8, "", "from 1, into surface_names; 0: no ground", bare, "surface class of the ground",
      .plants = PLANTS_LIST, .at = AT(cover), .choice = "cover"},

@@ -248,7 +248,7 @@ static double sun_of_day(double *taken, const SceneryTemps *t, int wall, const d
         const double k = scenery_walls_cosine(w, wall, s, n_enu) * (double)t->sun_k[wall][s];
         all += k, lost += shadow ? k * shadow[s] : 0;
     }
-    *taken = all > 1e-3 ? fmin(lost / (255 * all), 1) : 0;
+    *taken = all > 1e-3 ? clamp(lost / (255 * all), 0, 1) : 0;
     return all;
 }
 
@@ -296,14 +296,15 @@ void scenery_wall_seen(WallSeen *out, const SceneryTemps *t, const double n_enu[
                       .film_w_m2k = wall_film_w_m2k(&flux, temp_k, n_enu[2])};
 }
 
-/* Before a wall the map is asked a cell out of it, for its own cell may be as high as its roof. */
-static double wall_k(const SceneryTemps *t, int wall, const SceneryObject *o, const double p_body[3],
-                     const double n_enu[3])
+/* With all of the sun of the day past, and with none of it; returns the share of it that was taken. Before a wall the
+ * map is asked a cell out of it, for its own cell may be as high as its roof. */
+static double wall_in_sun(double *lit_k, double *shade_k, const SceneryTemps *t, int wall, const SceneryObject *o,
+                          const double p_body[3], const double n_enu[3])
 {
     static const double roof_up = 0.5;
     const SceneryHeat  *h = t->heat;
     uint8_t             shadow[shadow_most_slots];
-    double              lit_k, shade_k, taken, open;
+    double              taken, open;
     if (h->config.shadow) {
         double p_enu[3];
         m3_mul_v3(p_enu, o->r_enu_from_body, p_body);
@@ -312,7 +313,15 @@ static double wall_k(const SceneryTemps *t, int wall, const SceneryObject *o, co
         heat_shadow_at(shadow, &open, h->config.shadow, p_enu[0], p_enu[1]);
     }
     const double sun_k = sun_of_day(&taken, t, wall, n_enu, h->config.shadow ? shadow : NULL);
-    facets_k(&lit_k, &shade_k, t, wall, n_enu, sun_k);
+    facets_k(lit_k, shade_k, t, wall, n_enu, sun_k);
+    return taken;
+}
+
+static double wall_k(const SceneryTemps *t, int wall, const SceneryObject *o, const double p_body[3],
+                     const double n_enu[3])
+{
+    double       lit_k, shade_k;
+    const double taken = wall_in_sun(&lit_k, &shade_k, t, wall, o, p_body, n_enu);
     return lit_k + taken * (shade_k - lit_k);
 }
 
@@ -378,8 +387,7 @@ void scenery_heat_of(SceneryHeatOf *out, const SceneryTemps *t, int object, int 
         const SceneryWalls *w = &h->walls;
         const double        a_k = w->table[0].behind_k[wall], b_k = w->table[1].behind_k[wall];
         out->of = &w->wall[wall].kind.of;
-        out->sun_k = facets_k(&out->shade_k, t, wall, n_enu);
-        out->taken = t->sun_k ? taken_at(t, wall, o, p_body, n_enu) : 0;
+        out->taken = wall_in_sun(&out->sun_k, &out->shade_k, t, wall, o, p_body, n_enu);
         out->behind_k = a_k + t->share * (b_k - a_k);
         return;
     }

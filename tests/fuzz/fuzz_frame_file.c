@@ -3,7 +3,7 @@
  * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "sensor/verify/saved_frame/saved_frame.h"
+#include "sensor/verify/saved_frame/saved_scene.h"
 #include "sensor/verify/saved_frame/ground_cutout_private.h"
 
 #include <stdlib.h>
@@ -14,9 +14,35 @@ const int fuzz_rounds = 3000;
 
 static void identity(double r[9]) { m3_identity(r); }
 
+/* A house, a road, a tank and a tree of files; on invented ground they are invented. */
+static void build(SavedScenery *out, bool invented)
+{
+    static double      corner[6][2] = {{0, 0}, {9, 0}, {9, 7}, {0, 7}, {-30, -9}, {40, -8}};
+    static Building    house = {.id = 1,
+                                .corners = 4,
+                                .base_m = 2,
+                                .eaves_m = 5,
+                                .ridge_m = 8,
+                                .roof = ROOF_GABLED,
+                                .roof_fabric = FABRIC_TILE,
+                                .levels = 2,
+                                .heated = true};
+    static CultureLine road = {
+        .id = 2, .first_corner = 4, .corners = 2, .width_m = 5, .kind = CULTURE_ROAD, .surface = 1};
+    static CulturePoint tank = {.id = 3, .x_m = 30, .size_m = {4, 4, 6}, .kind = CULTURE_TANK};
+    static CultureTree  tree = {.id = 4, .y_m = 30, .height_m = 12};
+    *out = (SavedScenery){.plan = {.from = invented ? CULTURE_FROM_SEED : CULTURE_FROM_RECORDS,
+                                   .invented = {7, {0, 0}, 200},
+                                   .clutter = 1,
+                                   .south_west_m = {-200, -200},
+                                   .north_east_m = {200, 200}},
+                          .objects = 3};
+    if (!invented) out->culture = (Culture){6, 1, 1, 1, 1, corner, &house, &road, &tank, &tree, {0}, 0, 0, NULL};
+}
+
 /* Two entities, a puff, a mark of each sort; ground of two nested levels with cover and a photograph, or invented; with
- * plants or without. */
-static void small_file(ByteSink *out, bool invented, bool planted)
+ * plants or without, with scenery or without. */
+static void small_file(ByteSink *out, bool invented, bool planted, bool built)
 {
     static uint16_t       stored[elevation_tile_posts];
     static ElevationTile  tile[1] = {{-elevation_base_unit, 2}};
@@ -97,6 +123,8 @@ static void small_file(ByteSink *out, bool invented, bool planted)
     static const WoodsPath path[2] = {{{1, 2}, {3, 4}, 5, 0}, {{6, 7}, {6, 7}, 8, 3}};
     file.planted = planted;
     if (planted) file.woods = (WoodsConfig){.half_width_m = 500, .most_trees = 70, .path_count = 2, .path = path};
+    file.built = built;
+    if (built) build(&file.scenery, invented);
     static double joint[64];
     file.measured = planted;
     if (planted)
@@ -109,7 +137,7 @@ static void small_file(ByteSink *out, bool invented, bool planted)
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     ByteSink file = {0};
-    small_file(&file, index % 2 == 0, index / 2 % 2 == 1);
+    small_file(&file, index % 2 == 0, index / 2 % 2 == 1, index / 4 % 2 == 1);
     const size_t size = file.count;
     if (size > fuzz_seed_octets) abort();
     memcpy(out, file.bytes, size);
@@ -143,6 +171,10 @@ static bool parse(const uint8_t *data, size_t size)
         if (file->planted && !(w->half_width_m >= 50 && w->most_trees <= woods_most_trees)) abort();
         for (int i = 0; i < w->path_count; i++)
             if (!isfinite(w->path[i].a_m[0] + w->path[i].b_m[1]) || !(w->path[i].half_m >= 0)) abort();
+        const Culture *c = &file->scenery.culture;
+        if (culture_fault(c)) abort();
+        if (file->built && !(file->scenery.plan.clutter <= 20 && file->scenery.plan.invented.half_width_m <= 1e6))
+            abort();
         Landscape   landscape = {0};
         const char *why = NULL;
         size_t      posts = 0;
@@ -156,6 +188,12 @@ static bool parse(const uint8_t *data, size_t size)
                 if (isinf(z_m)) abort();
                 if (landscape_surface(&landscape, k, 0.3 * k) >= SURFACE_COUNT) abort();
                 landscape_albedo(factor, &landscape, SURFACE_GRASS, k, 0.3 * k, 1);
+            }
+            FrameScenery scenery; /* its buildings alone: clutter has its own table and limits */
+            file->scenery.plan.clutter = 0;
+            if (file->built && file->scenery.plan.from == CULTURE_FROM_RECORDS) {
+                (void)saved_scenery_make(&scenery, &landscape, file, true);
+                frame_scenery_free(&scenery);
             }
             landscape_destroy(&landscape);
             made = true;
@@ -172,9 +210,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static bool begun = false;
     log_set_level((LogLevel)(LOG_ERROR + 1));
-    for (int k = 0; k < 4 && !begun; k++) { /* an undamaged file is accepted, or nothing here is tried */
+    for (int k = 0; k < 8 && !begun; k++) { /* an undamaged file is accepted, or nothing here is tried */
         ByteSink whole = {0};
-        small_file(&whole, k % 2 == 0, k >= 2);
+        small_file(&whole, k % 2 == 0, k / 2 % 2 == 1, k >= 4);
         if (!parse(whole.bytes, whole.count)) abort();
         sink_free(&whole);
     }
@@ -188,7 +226,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     ByteSink    seed = {0};
     Arena      *arena = arena_create();
     if (!arena) abort();
-    small_file(&seed, size % 2 == 0, size / 2 % 2 == 0);
+    small_file(&seed, size % 2 == 0, size / 2 % 2 == 0, size / 4 % 2 == 0);
     if (chunks_open(&chunks, seed.bytes, seed.count, arena) != STATUS_OK) abort();
     chunks_begin(&again);
     for (int c = 0; chunks_next(&chunks, name, &content) == STATUS_OK && *name; c++) {
@@ -197,7 +235,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         sink_bytes(&plain, content.at, octets);
         /* four octets say: which chunk, where, what */
         for (size_t i = 0; i + 3 < size && i < 24; i += 4)
-            if (octets > 0 && data[i] % 9 == c)
+            if (octets > 0 && data[i] % 13 == c)
                 plain.bytes[(data[i + 1] | (size_t)data[i + 2] << 8) % octets] ^= data[i + 3];
         chunks_put(&again, name, &plain);
         sink_free(&plain);

@@ -223,19 +223,20 @@ static Status parsed(SavedFrame *out, uint32_t says, int version, Arena *arena)
 }
 
 /* What etc/FRAME_FILE.md says a version lacks takes no octets in it, and is read as it was before: nothing, no step of
- * sampling, straight lines of sight. A u32, or a bool, has 4 octets, a float 4, a double 8, a list 4 and its records.
+ * sampling, straight lines of sight, the time of plants or none. A u32, or a bool, has 4 octets, a float 4, a double 8, a list 4 and its records.
  */
 static void older_versions_are_read(void **state)
 {
     enum { places = 4 + 2 * 16, blow = 9 * 4 + 2 * 8, patches = 12 + 4 + 2 * 4, roles = 21 * 4 };
     static const int less[chunks_version][changed_parts] = {/* than now, from version 1 */
-                                                            {16, places + 8, blow, patches - roles},
-                                                            {16, places + 8, blow, patches - roles},
-                                                            {16, places + 8, blow, 0},
-                                                            {16, places + 8, 0, 0},
-                                                            {12, places + 8, 0, 0},
-                                                            {12, 8, 0, 0},
-                                                            {8, 8, 0, 0},
+                                                            {24, places + 8, blow, patches - roles},
+                                                            {24, places + 8, blow, patches - roles},
+                                                            {24, places + 8, blow, 0},
+                                                            {24, places + 8, 0, 0},
+                                                            {20, places + 8, 0, 0},
+                                                            {20, 8, 0, 0},
+                                                            {16, 8, 0, 0},
+                                                            {16, 0, 0, 0},
                                                             {8, 0, 0, 0},
                                                             {0, 0, 0, 0}};
     Arena           *arena = arena_create();
@@ -253,6 +254,7 @@ static void older_versions_are_read(void **state)
         const SnapshotEntity *e = &got.snapshot.entity[0];
         const GroundStand    *stand = &got.snapshot.marks.stand[0];
         CHECK(got.snapshot.count == 1 && got.snapshot.marks.stands == 1 && got.woods.most_trees == 70);
+        CHECK(!got.built);
         CHECK(version >= 9 ? got.ground_km2 == 1.5 : isnan(got.ground_km2));
         CHECK(got.woods.far_half_m == (version >= 8 ? 20000 : 0));
         CHECK(got.request.refraction == (version >= 7));

@@ -36,12 +36,19 @@ def table(path, *columns):
     return {row['name']: [float(row[c] or 0) if c in row else 0.0 for c in columns] for row in csv.DictReader(lines)}
 
 
+def truth_line():
+    return next(t for t in map(json.loads, open(f'{OUT}/truth.jsonl')) if t['frame'] == FRAME)
+
+
 # ---- which pixels ----------------------------------------------------------------------------------
 
 def pixels():
     entity, cover = exr('truth', 'entity', UINT), exr('truth', 'cover', UINT)
     range_m, instance = exr('truth', 'range_m'), exr('truth', 'instance', UINT)
+    part = exr('truth', 'part', UINT)
+    scenery = (part > 0) & (entity == 0) if part is not None else np.zeros_like(entity, bool)
     plant = instance > 0 if instance is not None else np.zeros_like(entity, bool)
+    plant &= ~scenery
     grown = np.zeros_like(plant)
     for dy in (-1, 0, 1):
         for dx in (-1, 0, 1):
@@ -55,11 +62,18 @@ def pixels():
     kinds = {
         'sky': np.isinf(range_m) & (entity == 0),
         'plant': plant & (entity == 0),
-        'ground': (cover > 0) & (entity == 0) & ~grown & ~edge,
+        'ground': (cover > 0) & (entity == 0) & ~grown & ~edge & ~scenery,
+        'scenery': scenery,
         'inside': (entity > 0) & ~edge,
         'edge': (entity > 0) & edge,
         'beside': (entity == 0) & edge & np.isfinite(range_m),
     }
+    if scenery.any():  # buildings by how much of them is seen, the most first; clutter likewise
+        clutter = {c['instance'] for c in truth_line().get('clutter', ())}
+        for kind, wanted in (('building', False), ('clutter', True)):
+            numbers, count = np.unique(instance[scenery], return_counts=True)
+            for k in sorted((k for k, n in zip(count, numbers) if (int(n) in clutter) == wanted), reverse=True)[:1]:
+                kinds[kind] = scenery & (instance == numbers[list(count).index(k)])
     for kind, where in kinds.items():
         found = np.argwhere(where)
         for k in {len(found) // 3} if len(found) else ():
@@ -138,6 +152,28 @@ def planck(low_um, high_um, temp_k):
     return float((of * simpson).sum() * (w[1] - w[0]) / 3)
 
 
+def check_construction(s, t, wrong):
+    """The row of etc/constructions.csv that has this name is of such a part; its room is as warm as it says."""
+    part = s['surface'].rsplit(', ', 1)[1]
+    rows = [r for r in csv.DictReader(line for line in open('etc/constructions.csv') if not line.startswith('#'))
+            if r['name'] == t['construction'] and r['part'] in ('', part)]
+    if not rows:
+        wrong.append(f'no construction {t["construction"]} of a {part}')
+    inside = {'a heated room': 'heated', 'an unheated room': 'unheated', 'a flue': 'flue',
+              'the open on its other side': 'back', 'nothing that gives or takes heat': 'none'}[t['behind']]
+    if inside not in {r['inside'] for r in rows}:
+        wrong.append(f'behind it is {t["behind"]}')
+    if inside == 'heated' and not any(abs(t['behind_k'] - 273.15 - float(r[c])) < 0.01 or t['behind_k'] > t['air_k']
+                                      for r in rows for c in ('day_c', 'night_c')):
+        wrong.append(f'its room has {t["behind_k"]} K')
+    if not 0 <= t['shaded'] <= 1:
+        wrong.append(f'{t["shaded"]} of its sun was taken')
+    # over the weather's thermometer; at a height of its own up to 0.2 K beside
+    told = t['in_sun_k'] + t['shaded'] * (t['in_shade_k'] - t['in_sun_k'])
+    if abs(told - t['temp_k']) > 0.2:
+        wrong.append(f'{t["temp_k"]} K, by sun and shade {told}')
+
+
 def check_heat(all_samples, wrong):
     bands = table('etc/channels.csv', 'low_um', 'high_um')
     materials = table('etc/materials.csv', 'gloss', 'rho_mwir', 'rho_lwir', 'tau_mwir', 'tau_lwir')
@@ -150,6 +186,8 @@ def check_heat(all_samples, wrong):
         parts = t['air_k'] + t['heat_k'] + t['sun_or_photograph_k'] + t['detail_k'] + t['far_woods_k']
         if parts != t['temp_k']:
             wrong.append(f'its temperature is {t["temp_k"]}, the terms {parts}')
+        if 'construction' in t:
+            check_construction(s, t, wrong)
         for p in t.get('patches', ()):
             if not 150 < p['temp_k'] < 1500 or not 0 < p['share'] < 1.000001:
                 wrong.append(f'a patch of {p}')

@@ -108,7 +108,7 @@ head -c $((size / 2)) "$file" >"$tmp/damaged.pvf"; refused "cut" 'ends too early
 cp "$file" "$tmp/damaged.pvf"
 printf '\377\377\377\377' | dd of="$tmp/damaged.pvf" bs=1 seek=$((size / 2)) conv=notrunc status=none
 refused "octets turned" 'damaged'
-printf '\012' | dd of="$tmp/damaged.pvf" bs=1 seek=8 conv=notrunc status=none; refused "a later format" 'another version'
+printf '\013' | dd of="$tmp/damaged.pvf" bs=1 seek=8 conv=notrunc status=none; refused "a later format" 'another version'
 
 # another table, named; forced: the planes that it changes, named
 cp -r etc "$tmp/etc"
