@@ -46,8 +46,9 @@ typedef bool Joins(const void *user, const Patches *p, int x, int y, int dx, int
 /* A patch of cells that hold `from`, joined by sides where `joins` says so. */
 typedef struct Patch {
     int32_t number;
-    size_t  first, last; /* least and greatest index of its cells */
-    int     cells, cuts; /* how often it was cut off one that no shape fits */
+    size_t  first, last;    /* least and greatest index of its cells */
+    int     cells, cuts;    /* how often it was cut off one that no shape fits */
+    int     x0, y0, x1, y1; /* box of its cells, inclusive */
 } Patch;
 
 static Patch fill_patch(Patches *p, size_t first, int32_t from, int32_t number, Joins *joins, const void *user)
@@ -55,6 +56,7 @@ static Patch fill_patch(Patches *p, size_t first, int32_t from, int32_t number, 
     static const int go[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     Patch            patch = {.number = number, .first = first, .last = first};
     int              count = 0;
+    patch.x0 = patch.x1 = (int)(first % (size_t)p->nx), patch.y0 = patch.y1 = (int)(first / (size_t)p->nx);
     p->of[first] = number;
     p->todo[count++] = (int32_t)first;
     while (count > 0) {
@@ -62,6 +64,8 @@ static Patch fill_patch(Patches *p, size_t first, int32_t from, int32_t number, 
         patch.cells++;
         patch.first = (size_t)c < patch.first ? (size_t)c : patch.first;
         patch.last = (size_t)c > patch.last ? (size_t)c : patch.last;
+        patch.x0 = x < patch.x0 ? x : patch.x0, patch.x1 = x > patch.x1 ? x : patch.x1;
+        patch.y0 = y < patch.y0 ? y : patch.y0, patch.y1 = y > patch.y1 ? y : patch.y1;
         for (int k = 0; k < 4; k++) {
             const int i = x + go[k][0], j = y + go[k][1];
             if (i < 0 || j < 0 || i >= p->nx || j >= p->ny) continue;
@@ -72,6 +76,39 @@ static Patch fill_patch(Patches *p, size_t first, int32_t from, int32_t number, 
         }
     }
     return patch;
+}
+
+/* Whether a patch is nowhere three cells wide. */
+static bool is_thin(const Patches *p, const Patch *patch)
+{
+    for (int y = patch->y0 + 1; y < patch->y1; y++)
+        for (int x = patch->x0 + 1; x < patch->x1; x++) {
+            bool whole = true;
+            for (int k = 0; k < 9 && whole; k++)
+                whole = p->of[(size_t)(y + k / 3 - 1) * (size_t)p->nx + (size_t)(x + k % 3 - 1)] == patch->number;
+            if (whole) return false;
+        }
+    return true;
+}
+
+/* Whether a patch is the edge of another roof: cells that are partly roof and partly ground lie between both in height
+ * and can be a patch of their own. It is thin, and another roof lies beside at least a third of its cells. */
+static bool is_edge(const Patches *p, const Patch *patch)
+{
+    int beside = 0;
+    if (!is_thin(p, patch)) return false;
+    for (int y = patch->y0; y <= patch->y1; y++)
+        for (int x = patch->x0; x <= patch->x1; x++) {
+            const size_t c = (size_t)y * (size_t)p->nx + (size_t)x;
+            if (p->of[c] != patch->number) continue;
+            const int32_t near[4] = {x > 0 ? p->of[c - 1] : 0, x + 1 < p->nx ? p->of[c + 1] : 0,
+                                     y > 0 ? p->of[c - (size_t)p->nx] : 0,
+                                     y + 1 < p->ny ? p->of[c + (size_t)p->nx] : 0};
+            bool other = false;
+            for (int k = 0; k < 4; k++) other |= near[k] != 0 && near[k] != patch->number;
+            beside += other;
+        }
+    return 3 * beside >= patch->cells;
 }
 
 /* ---- patches of several heights ------------------------------------------------------------------------- */
@@ -159,13 +196,22 @@ static void consider(RoofFit *best, const RoofFit *other)
     if (other->ridge_m - other->eaves_m >= least_rise_m && other->rms_m < better * best->rms_m) *best = *other;
 }
 
+static int by_height(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
 static RoofFit fit_roof(const Roof *r, double *x)
 {
     double  a, b, rms;
     RoofFit best = {.shape = ROOF_FLAT};
     for (int k = 0; k < r->count; k++) x[k] = 0;
     fit_line(&a, &b, &rms, r->count, x, r->z_m);
-    best.eaves_m = best.ridge_m = a, best.rms_m = fmax(rms, 0.02);
+    memcpy(x, r->z_m, (size_t)r->count * sizeof *x);
+    qsort(x, (size_t)r->count, sizeof *x, by_height);
+    /* a flat roof lies where most of its cells are, not parapets and what stands on it */
+    best.eaves_m = best.ridge_m = x[r->count / 2], best.rms_m = fmax(rms, 0.02);
     for (int axis = 0; axis < 2; axis++) { /* gables: the ridge along that axis */
         const double *off = axis ? r->u_m : r->v_m, half = r->half_m[1 - axis];
         for (int k = 0; k < r->count; k++) x[k] = fabs(off[k]);
@@ -202,11 +248,16 @@ static double wall_distance(const Outline *o, double x, double y)
     return least;
 }
 
+/* A patch at a time, in arrays of its own box: what is made of it is the same wherever the window lies. */
 typedef struct Work {
-    Patches             patches;
-    const SurfaceParts *parts;
+    Culture            *culture;
     const SurfaceModel *model;
     const SurfacePlace *place;
+    const SurfaceCore  *core;
+    int                 x0, y0; /* south-west cell of the box in the window */
+    Patches             patches;
+    SurfaceParts        parts; /* of the box, building where the patch is */
+    size_t              room;  /* cells of the box's arrays */
     Outline             outline;
     Roof                roof;
     double             *x;
@@ -233,8 +284,8 @@ static double gather(Work *w, const Patch *patch)
         r->u_m[r->count] = (c * x + s * y - 0.5 * (low[0] + high[0])) * cell_m;
         r->v_m[r->count] = (c * y - s * x - 0.5 * (low[1] + high[1])) * cell_m;
         r->wall_m[r->count] = wall_distance(o, x, y) * cell_m;
-        r->z_m[r->count++] = (double)w->parts->roof_m[at];
-        base_m = fmin(base_m, (double)w->parts->bare_m[at]);
+        r->z_m[r->count++] = (double)w->parts.roof_m[at];
+        base_m = fmin(base_m, (double)w->parts.bare_m[at]);
     }
     return base_m;
 }
@@ -244,7 +295,7 @@ static double gather(Work *w, const Patch *patch)
 static bool cut_patch(Work *w, const Patch *patch)
 {
     Patches      *p = &w->patches;
-    const Parting parting = {w->parts, parting_m(w->roof.z_m, w->roof.count)};
+    const Parting parting = {&w->parts, parting_m(w->roof.z_m, w->roof.count)};
     const int     begun = w->patch_count;
     int32_t       small = 0;
     p->before_cut = p->count;
@@ -253,7 +304,7 @@ static bool cut_patch(Work *w, const Patch *patch)
         if (p->of[c] != patch->number) continue;
         Patch piece = fill_patch(p, c, patch->number, ++p->count, same_side, &parting);
         piece.cuts = patch->cuts + 1;
-        if (piece.cells >= w->least_cells) w->patch[w->patch_count++] = piece;
+        if (piece.cells >= w->least_cells && !is_thin(p, &piece)) w->patch[w->patch_count++] = piece;
         else small = -1, fill_patch(p, piece.first, piece.number, small, same_side, &parting);
     }
     if (small) give_away(p, patch->first, patch->last, small);
@@ -266,80 +317,180 @@ static bool cut_patch(Work *w, const Patch *patch)
     return w->patch_count > begun;
 }
 
-static Status add_patch(Culture *culture, Work *w, const Patch *patch)
+/* Whether the mean of the corners lies in the core. */
+static bool is_of_core(const Work *w)
+{
+    const Outline *o = &w->outline;
+    double         x = 0, y = 0;
+    for (int k = 0; k < o->corners; k++) x += o->corner[k][0] / o->corners, y += o->corner[k][1] / o->corners;
+    const int i = w->x0 + (int)floor(x), j = w->y0 + (int)floor(y);
+    return !w->core || (i >= w->core->i0 && i < w->core->i1 && j >= w->core->j0 && j < w->core->j1);
+}
+
+static Status add_patch(Work *w, const Patch *patch)
 {
     static const double good_m = 0.5;
     enum { most_cuts = 5 };
-    Outline *o = &w->outline;
+    Outline      *o = &w->outline;
+    const int64_t column = w->model->column + w->x0, row = w->model->row + w->y0;
     if (!outline_of_cells(o, w->patches.of, w->patches.nx, w->patches.ny, patch->number, patch->first)) {
-        culture->left_out++;
+        w->outline.corners = 1;
+        w->outline.corner[0][0] = (double)(patch->first % (size_t)w->patches.nx);
+        w->outline.corner[0][1] = (double)(patch->first / (size_t)w->patches.nx);
+        w->culture->left_out += is_of_core(w);
         return STATUS_OK;
     }
     const double  base_m = gather(w, patch);
     const RoofFit fit = fit_roof(&w->roof, w->x);
     if (fit.rms_m > good_m && patch->cells >= 2 * w->least_cells && patch->cuts < most_cuts && cut_patch(w, patch))
         return STATUS_OK;
+    if (!is_of_core(w)) return STATUS_OK;
     double direction[2];
     for (int c = 0; c < 2; c++)
         direction[c] = w->place->east_m[c] * cos(o->along_rad + fit.turn_rad) +
                        w->place->north_m[c] * sin(o->along_rad + fit.turn_rad);
     for (int k = 0; k < o->corners; k++) {
-        const double i = o->corner[k][0], j = o->corner[k][1];
+        const double i = (double)column + o->corner[k][0], j = (double)row + o->corner[k][1];
         for (int c = 0; c < 2; c++)
             o->corner[k][c] = w->place->origin_m[c] + i * w->place->east_m[c] + j * w->place->north_m[c];
     }
-    const double   area_m2 = w->roof.count * w->model->cell_m * w->model->cell_m;
-    const double   eaves_m = fmax(fit.eaves_m - base_m, 1);
-    const Building b = {.id = (uint64_t)(w->model->row * 0x9e3779b97f4a7c15u + w->model->column) ^ (patch->first + 1),
-                        .base_m = (float)base_m,
-                        .eaves_m = (float)eaves_m,
-                        .ridge_m = (float)fmax(fit.ridge_m - base_m, eaves_m),
-                        .ridge_rad = (float)atan2(direction[1], direction[0]),
-                        .use = area_m2 > 900  ? BUILDING_HALL
-                               : area_m2 < 30 ? BUILDING_SHED
-                               : eaves_m > 9  ? BUILDING_FLATS
-                                              : BUILDING_HOUSE,
-                        .roof = (uint8_t)fit.shape,
-                        .wall_fabric = area_m2 > 900 ? FABRIC_SHEET : FABRIC_RENDER,
-                        .roof_fabric = fit.shape == ROOF_FLAT ? FABRIC_FELT
-                                       : area_m2 > 900        ? FABRIC_SHEET
-                                                              : FABRIC_TILE,
-                        .levels = (uint8_t)clamp(rint(eaves_m / 3), 1, 100),
-                        .heated = area_m2 >= 30};
-    return culture_add_building(culture, &b, (const double(*)[2])o->corner, o->corners);
+    const uint64_t    of_row = (uint64_t)(row + (int64_t)(patch->first / (size_t)w->patches.nx));
+    const uint64_t    of_column = (uint64_t)(column + (int64_t)(patch->first % (size_t)w->patches.nx));
+    const double      area_m2 = w->roof.count * w->model->cell_m * w->model->cell_m;
+    const double      eaves_m = fmax(fit.eaves_m - base_m, 1);
+    const BuildingUse use = area_m2 > 900  ? BUILDING_HALL
+                            : area_m2 < 30 ? BUILDING_SHED
+                            : eaves_m > 9  ? BUILDING_FLATS
+                                           : BUILDING_HOUSE;
+    const Building    b = {.id = of_row << 32 | (of_column & 0xffffffffu),
+                           .base_m = (float)base_m,
+                           .eaves_m = (float)eaves_m,
+                           .ridge_m = (float)fmax(fit.ridge_m - base_m, eaves_m),
+                           .ridge_rad = (float)atan2(direction[1], direction[0]),
+                           .use = (uint8_t)use,
+                           .roof = (uint8_t)fit.shape,
+                           .wall_fabric = use == BUILDING_HALL ? FABRIC_SHEET : FABRIC_RENDER,
+                           .roof_fabric = fit.shape == ROOF_FLAT ? FABRIC_FELT
+                                          : area_m2 > 900        ? FABRIC_SHEET
+                                                                 : FABRIC_TILE,
+                           .levels = (uint8_t)clamp(rint(eaves_m / 3), 1, 100),
+                           .heated = area_m2 >= 30};
+    return culture_add_building(w->culture, &b, (const double(*)[2])o->corner, o->corners);
 }
 
-Status culture_add_surface(Culture *culture, const SurfaceParts *parts, const SurfaceModel *model,
-                           const SurfacePlace *place)
+/* ---- one box after the other ------------------------------------------------------------------------------ */
+
+static void free_box(Work *w)
 {
-    const size_t n = (size_t)model->nx * (size_t)model->ny;
-    Work        *w = calloc(1, sizeof *w);
-    Status       status = STATUS_NO_MEMORY;
-    if (!w) return status;
-    *w = (Work){.patches = {.nx = model->nx, .ny = model->ny}, .parts = parts, .model = model, .place = place};
-    w->patches.of = calloc(n, sizeof(int32_t));
-    w->patches.todo = malloc(n * sizeof(int32_t));
-    w->roof.u_m = malloc(n * sizeof(double)), w->roof.v_m = malloc(n * sizeof(double));
-    w->roof.z_m = malloc(n * sizeof(double)), w->roof.wall_m = malloc(n * sizeof(double));
-    w->x = malloc(n * sizeof(double));
-    w->least_cells = (int)fmax(least_m2 / (model->cell_m * model->cell_m), 4);
-    w->patch_room = (int)(8 * n / (size_t)w->least_cells) + 8; /* each cell is in a few, one for each cut */
+    free(w->patches.of), free(w->patches.todo), free(w->parts.bare_m), free(w->parts.roof_m), free(w->parts.kind);
+    free(w->roof.u_m), free(w->roof.v_m), free(w->roof.z_m), free(w->roof.wall_m), free(w->x), free(w->patch);
+}
+
+/* Makes room for a box of cells. */
+static Status grow_box(Work *w, size_t cells)
+{
+    if (cells <= w->room) return STATUS_OK;
+    free_box(w);
+    w->patches.of = malloc(cells * sizeof(int32_t)), w->patches.todo = malloc(cells * sizeof(int32_t));
+    w->parts.bare_m = malloc(cells * sizeof(float)), w->parts.roof_m = malloc(cells * sizeof(float));
+    w->parts.kind = malloc(cells);
+    w->roof.u_m = malloc(cells * sizeof(double)), w->roof.v_m = malloc(cells * sizeof(double));
+    w->roof.z_m = malloc(cells * sizeof(double)), w->roof.wall_m = malloc(cells * sizeof(double));
+    w->x = malloc(cells * sizeof(double));
+    w->patch_room = (int)(8 * cells / (size_t)w->least_cells) + 8; /* each cell is in a few, one for each cut */
     w->patch = malloc((size_t)w->patch_room * sizeof *w->patch);
-    if (w->patches.of && w->patches.todo && w->roof.u_m && w->roof.v_m && w->roof.z_m && w->roof.wall_m && w->x &&
-        w->patch)
-        status = STATUS_OK;
-    for (size_t c = 0; c < n && status == STATUS_OK; c++) w->patches.of[c] = isnan(roof_of(parts, c)) ? 0 : unseen;
-    for (size_t c = 0; c < n && status == STATUS_OK; c++) {
+    w->room = cells;
+    return w->patches.of && w->patches.todo && w->parts.bare_m && w->parts.roof_m && w->parts.kind && w->roof.u_m &&
+                   w->roof.v_m && w->roof.z_m && w->roof.wall_m && w->x && w->patch
+               ? STATUS_OK
+               : STATUS_NO_MEMORY;
+}
+
+static bool always(const void *user, const Patches *p, int x, int y, int dx, int dy)
+{
+    (void)user, (void)p, (void)x, (void)y, (void)dx, (void)dy;
+    return true;
+}
+
+/* The buildings of those cells of a patch of the window that lie in a box. */
+static Status take_box(Work *w, const Patches *window, int32_t number, const SurfaceParts *parts,
+                       const SurfaceCore *box)
+{
+    const int    nx = box->i1 - box->i0, ny = box->j1 - box->j0;
+    const size_t cells = (size_t)nx * (size_t)ny;
+    Status       status = grow_box(w, cells);
+    if (status != STATUS_OK) return status;
+    w->x0 = box->i0, w->y0 = box->j0;
+    w->patches.nx = nx, w->patches.ny = ny, w->patches.count = 0, w->patch_count = 0;
+    for (size_t c = 0; c < cells; c++) {
+        const size_t at = ((size_t)box->j0 + c / (size_t)nx) * (size_t)window->nx + (size_t)box->i0 + c % (size_t)nx;
+        const bool   of = window->of[at] == number;
+        w->patches.of[c] = of ? unseen : 0;
+        w->parts.kind[c] = of ? CELL_BUILDING : CELL_BARE;
+        w->parts.roof_m[c] = of ? parts->roof_m[at] : NAN;
+        w->parts.bare_m[c] = parts->bare_m[at];
+    }
+    for (size_t c = 0; c < cells; c++) {
         if (w->patches.of[c] != unseen) continue;
-        const Patch patch = fill_patch(&w->patches, c, unseen, ++w->patches.count, goes_on, parts);
+        const Patch patch = fill_patch(&w->patches, c, unseen, ++w->patches.count, always, NULL);
         if (patch.cells >= w->least_cells) w->patch[w->patch_count++] = patch;
     }
     for (int k = 0; k < w->patch_count && status == STATUS_OK; k++) {
         const Patch patch = w->patch[k];
-        status = add_patch(culture, w, &patch);
+        status = add_patch(w, &patch);
     }
-    free(w->patch);
-    free(w->patches.of), free(w->patches.todo), free(w->roof.u_m), free(w->roof.v_m), free(w->roof.z_m);
-    free(w->roof.wall_m), free(w->x), free(w);
+    return status;
+}
+
+static int64_t floor_to(int64_t value, int64_t step) { return value - ((value % step) + step) % step; }
+
+/* A patch of the window as it is, or, larger than surface_building_most_m, cut along lines that the whole model has. */
+static Status take_patch(Work *w, const Patches *window, const Patch *patch, const SurfaceParts *parts)
+{
+    const int most = (int)(surface_building_most_m / w->model->cell_m), tile = most / 2 > 1 ? most / 2 : 1;
+    /* walls that are fitted may lie outside of the cells a little */
+    const SurfaceCore *core = w->core;
+    enum { more = 8 };
+    if (core && (patch->x1 + more < core->i0 || patch->x0 - more >= core->i1 || patch->y1 + more < core->j0 ||
+                 patch->y0 - more >= core->j1))
+        return STATUS_OK;
+    if (patch->x1 - patch->x0 < most && patch->y1 - patch->y0 < most) {
+        const SurfaceCore box = {patch->x0, patch->y0, patch->x1 + 1, patch->y1 + 1};
+        return take_box(w, window, patch->number, parts, &box);
+    }
+    const int64_t column = w->model->column, row = w->model->row;
+    Status        status = STATUS_OK;
+    for (int64_t j = floor_to(row + patch->y0, tile); j <= row + patch->y1 && status == STATUS_OK; j += tile)
+        for (int64_t i = floor_to(column + patch->x0, tile); i <= column + patch->x1 && status == STATUS_OK;
+             i += tile) {
+            const SurfaceCore box = {(int)fmax((double)(i - column), patch->x0),
+                                     (int)fmax((double)(j - row), patch->y0),
+                                     (int)fmin((double)(i - column + tile), patch->x1 + 1),
+                                     (int)fmin((double)(j - row + tile), patch->y1 + 1)};
+            status = take_box(w, window, patch->number, parts, &box);
+        }
+    return status;
+}
+
+Status culture_add_surface(Culture *culture, const SurfaceParts *parts, const SurfaceModel *model,
+                           const SurfacePlace *place, const SurfaceCore *core)
+{
+    const size_t n = (size_t)model->nx * (size_t)model->ny;
+    Patches      window = {.nx = model->nx, .ny = model->ny};
+    Work        *w = calloc(1, sizeof *w);
+    Status       status = STATUS_NO_MEMORY;
+    window.of = malloc(n * sizeof(int32_t));
+    window.todo = malloc(n * sizeof(int32_t));
+    if (w && window.of && window.todo) status = STATUS_OK;
+    if (w) *w = (Work){.culture = culture, .model = model, .place = place, .core = core};
+    if (w) w->least_cells = (int)fmax(least_m2 / (model->cell_m * model->cell_m), 4);
+    for (size_t c = 0; c < n && status == STATUS_OK; c++) window.of[c] = isnan(roof_of(parts, c)) ? 0 : unseen;
+    for (size_t c = 0; c < n && status == STATUS_OK; c++) {
+        if (window.of[c] != unseen) continue;
+        const Patch patch = fill_patch(&window, c, unseen, ++window.count, goes_on, parts);
+        if (patch.cells >= w->least_cells && !is_edge(&window, &patch)) status = take_patch(w, &window, &patch, parts);
+    }
+    if (w) free_box(w);
+    free(window.of), free(window.todo), free(w);
     return status;
 }

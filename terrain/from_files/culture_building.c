@@ -134,7 +134,13 @@ static HeightFrom set_heights(Building *b, const CultureFacts *f, double area_m2
     const CultureRule *rule = f->what[VECTOR_POLYGON];
     if (rule && rule->height_m > 0) eaves_m = rule->height_m;
     if (!isnan(levels)) eaves_m = storey_m * levels, from = HEIGHT_FROM_LEVELS;
-    if (!isnan(height_m)) { /* of everything: the roof takes what its shape wants, and leaves the walls their share */
+    const double eaves_said_m = believed(f->eaves_m, 1, (double)culture_highest_m, mended);
+    if (!isnan(height_m) && eaves_said_m <= height_m + 1e-3) { /* both, as records have them */
+        eaves_m = fmin(eaves_said_m, height_m), rise_m = height_m - eaves_m, from = HEIGHT_FROM_FILE;
+    } else if (isnan(height_m) && !isnan(eaves_said_m)) {
+        eaves_m = eaves_said_m, from = HEIGHT_FROM_FILE;
+    } else if (!isnan(height_m)) { /* of everything: the roof takes what its shape wants, and leaves the walls their
+                                      share */
         eaves_m = fmax(height_m - rise_m, fmin(fmax(0.5 * height_m, least_m), height_m));
         rise_m = height_m - eaves_m, from = HEIGHT_FROM_FILE;
     }
@@ -149,6 +155,7 @@ static HeightFrom set_heights(Building *b, const CultureFacts *f, double area_m2
 static double ridge_of(const CultureFacts *f, RoofShape roof, double along_rad)
 {
     const double across_rad = along_rad + 0.5 * pi_rad;
+    if (fabs(f->ridge_rad) <= 2 * pi_rad) return f->ridge_rad;
     if (!isnan(f->direction_rad)) {
         const double faces_rad = 0.5 * pi_rad - f->direction_rad; /* from clockwise of north */
         return roof == ROOF_SKILLION ? faces_rad : faces_rad + 0.5 * pi_rad;
@@ -175,7 +182,10 @@ void culture_building_make(Building *out, HeightFrom *from, int *mended, const C
     b.wall_fabric = (uint8_t)(f->wall >= 0 ? f->wall : wall_of(use));
     b.roof_fabric = (uint8_t)(f->cover >= 0 ? f->cover : cover_of(use, (RoofShape)b.roof));
     b.damage = f->ruined ? 2 : 0;
-    b.heated = (use == BUILDING_HOUSE || use == BUILDING_FLATS) && !f->ruined;
-    b.chimneys = use == BUILDING_HOUSE ? 1 : use == BUILDING_FLATS && b.roof != ROOF_FLAT ? 2 : 0;
+    b.heated = f->heated >= 0 ? f->heated : (use == BUILDING_HOUSE || use == BUILDING_FLATS) && !f->ruined;
+    b.chimneys = f->chimneys >= 0 && f->chimneys <= 4           ? (uint8_t)f->chimneys
+                 : use == BUILDING_HOUSE                        ? 1
+                 : use == BUILDING_FLATS && b.roof != ROOF_FLAT ? 2
+                                                                : 0;
     *out = b;
 }

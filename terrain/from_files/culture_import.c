@@ -65,9 +65,7 @@ static uint64_t id_of(Import *i)
 
 /* ---- buildings -------------------------------------------------------------------------------------- */
 
-/* The lowest ground along an outline, looked at every 10 m, at most 64 times an edge; NaN where there is none at one of
- * these places. */
-static double lowest_m(const CultureFiles *from, const double (*p)[2], int corners)
+double culture_floor_m(const CultureFiles *from, const double (*p)[2], int corners)
 {
     enum { most_looks = 64 };
     static const double apart_m = 10;
@@ -121,7 +119,7 @@ static Status add_building(Import *i)
     if (!outline_is_within(i)) return leave(i, CULTURE_LEFT_OUTSIDE);
     const double area_m2 = fabs(area_of(p, n));
     if (!(area_m2 <= most_m2)) return leave(i, CULTURE_LEFT_LARGE);
-    const double base_m = lowest_m(i->from, p, n);
+    const double base_m = culture_floor_m(i->from, p, n);
     if (isnan(base_m)) return leave(i, CULTURE_LEFT_OUTSIDE);
     culture_building_make(&b, &from, &mended, &i->facts, p, n, area_m2);
     b.id = id_of(i), b.base_m = (float)base_m;

@@ -48,6 +48,9 @@ typedef struct CultureReport {
 /* Fills *out, which is empty, and indexes it (culture_index). What is left out or mended is one logged line.
  * STATUS_IO, STATUS_BAD_VALUE: a file cannot be used, logged; then *out is empty. */
 Status culture_open(Culture *out, CultureReport *report, const CultureFiles *from);
+/* ENU z of the floor of a building: the lowest ground along its outline, looked at every 10 m, at most 64 times an
+ * edge; NaN where there is none at one of these places. */
+double culture_floor_m(const CultureFiles *from, const double (*corner_m)[2], int corners);
 /* "3 outside the terrain, 1 larger than 1 km2 ..."; empty: nothing was left out. */
 void culture_report_left(char *out, size_t out_size, const CultureReport *report);
 /* Whether files and a table can be read, to their ends; what is wrong is logged. Either may be empty. */

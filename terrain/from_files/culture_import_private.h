@@ -34,6 +34,7 @@ typedef enum RuleMakes {
     MAKES_NOTHING,
     MAKES_HEIGHT, /* numbers and words, as all that follow */
     MAKES_PART_HEIGHT,
+    MAKES_EAVES,
     MAKES_LEVELS,
     MAKES_ROOF_HEIGHT,
     MAKES_ROOF_LEVELS,
@@ -42,6 +43,9 @@ typedef enum RuleMakes {
     MAKES_DIRECTION,
     MAKES_ROOF,
     MAKES_ROOF_WAY,
+    MAKES_RIDGE, /* its direction */
+    MAKES_CHIMNEYS,
+    MAKES_HEATED,
     MAKES_WALL,
     MAKES_COVER,
     MAKES_GROUND,
@@ -81,10 +85,12 @@ typedef struct CultureFacts {
     bool               known;                    /* some rule says what it is, perhaps something else */
     int                use, roof, wall, cover, ground, plant;
     int                roof_way; /* 0: along, 1: across */
-    double             height_m, part_height_m, levels, roof_height_m, roof_levels, width_m, lanes, direction_rad;
-    bool               bridge, hidden, ruined, marked;
-    int                unread; /* numbers that are none */
-    uint64_t           id;     /* 0: none */
+    int                heated;   /* 0, 1 */
+    double height_m, eaves_m, part_height_m, ridge_rad, chimneys, levels, roof_height_m, roof_levels, width_m, lanes,
+        direction_rad;
+    bool     bridge, hidden, ruined, marked;
+    int      unread; /* numbers that are none */
+    uint64_t id;     /* 0: none */
 } CultureFacts;
 
 void culture_facts(CultureFacts *out, const CultureRules *rules, int tags, const char *const *name,

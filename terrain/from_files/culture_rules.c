@@ -48,9 +48,10 @@ static const TableColumn columns[] = {
     {"key", TABLE_NAME, TABLE_AT(CultureRule, key), .key = false},
     {"value", TABLE_NAME, TABLE_AT(CultureRule, value), .key = false},
     {"makes", TABLE_CHOICE, TABLE_AT(CultureRule, makes),
-     .choices = "building, use, line, point, tree, tree_row, nothing, height, part_height, levels, roof_height, "
-                "roof_levels, width, lanes, direction, roof, roof_way, wall, cover, ground, plant, bridge, hidden, "
-                "ruined, marked, id, tags"},
+     .choices =
+         "building, use, line, point, tree, tree_row, nothing, height, part_height, eaves, levels, "
+         "roof_height, roof_levels, width, lanes, direction, roof, roof_way, ridge, chimneys, heated, wall, cover, ground, plant, bridge, hidden, "
+         "ruined, marked, id, tags"},
     {"kind", TABLE_NAME, TABLE_AT(CultureRule, kind_name), .absent = TABLE_EMPTY},
     {"height_m", TABLE_DOUBLE, TABLE_AT(CultureRule, height_m), .low = 0, .high = 850, .absent = TABLE_EMPTY},
     {"width_m", TABLE_DOUBLE, TABLE_AT(CultureRule, width_m), .low = 0, .high = 100, .absent = TABLE_EMPTY},
@@ -203,10 +204,14 @@ static bool is_no(const char *value)
     return false;
 }
 
-/* A number of 0 is one that a file does not know, but for a direction. */
+/* A number of 0 is one that a file does not know, but for a direction, and of what records alone say. */
 static bool fits(const CultureRule *rule, const char *value)
 {
-    if (strcmp(rule->value, "*") == 0) return rule->makes == MAKES_DIRECTION || !is_no(value);
+    if (strcmp(rule->value, "*") == 0) {
+        const int makes = rule->makes;
+        return makes == MAKES_DIRECTION || makes == MAKES_RIDGE || makes == MAKES_CHIMNEYS || makes == MAKES_HEATED ||
+               !is_no(value);
+    }
     return strcasecmp(rule->value, value) == 0;
 }
 
@@ -253,6 +258,9 @@ static void apply(CultureFacts *f, const CultureRule *rule, const char *value)
     case MAKES_PART_HEIGHT:
         set_number(f, &f->part_height_m, culture_metres, value);
         break;
+    case MAKES_EAVES:
+        set_number(f, &f->eaves_m, culture_metres, value);
+        break;
     case MAKES_LEVELS:
         set_number(f, &f->levels, culture_number, value);
         break;
@@ -280,6 +288,15 @@ static void apply(CultureFacts *f, const CultureRule *rule, const char *value)
         break;
     case MAKES_ROOF_WAY:
         f->roof_way = rule->kind;
+        break;
+    case MAKES_RIDGE:
+        set_number(f, &f->ridge_rad, culture_number, value);
+        break;
+    case MAKES_CHIMNEYS:
+        set_number(f, &f->chimneys, culture_number, value);
+        break;
+    case MAKES_HEATED:
+        f->heated = !is_no(value);
         break;
     case MAKES_WALL:
         f->wall = rule->kind;
@@ -346,6 +363,10 @@ void culture_facts(CultureFacts *out, const CultureRules *rules, int tags, const
                           .ground = -1,
                           .plant = -1,
                           .roof_way = -1,
+                          .heated = -1,
+                          .eaves_m = NAN,
+                          .ridge_rad = NAN,
+                          .chimneys = NAN,
                           .height_m = NAN,
                           .part_height_m = NAN,
                           .levels = NAN,

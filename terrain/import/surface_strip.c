@@ -1,5 +1,6 @@
 /* terrain/import/surface_strip.c: overlapping windows of a surface model taken apart, beyond its data the ground that
  * the files lead over to; and buildings counted. */
+#include "terrain/culture/culture_surface.h"
 #include "terrain/import/terrain_import_private.h"
 
 #include <stdlib.h>
@@ -19,6 +20,7 @@ typedef struct Work {
     int           windows;
     Crown       **crown; /* [windows] */
     int          *crowns;
+    Culture      *culture; /* [windows]; NULL: buildings are not wanted */
     Status       *status;
 } Work;
 
@@ -28,6 +30,7 @@ void surface_strip_free(SurfaceStrip *strip)
     free(strip->kind);
     free(strip->canopy_m);
     free(strip->crown);
+    culture_free(&strip->culture);
     *strip = (SurfaceStrip){0};
 }
 
@@ -70,8 +73,9 @@ static void keep_window(Work *w, const SurfaceParts *parts, int task, int i0, in
             if (!isfinite(h_m)) h_m = (double)w->plain_m[src];
             const double canopy_m = (double)w->surface_m[src] - h_m;
             h_m += share * share * (3 - 2 * share) * ((double)w->plain_m[src] - h_m);
-            if (kind == CELL_BUILDING && isfinite(parts->roof_m[n])) h_m = (double)parts->roof_m[n];
-            else if (kind == CELL_BUILDING) kind = CELL_BARE;
+            const bool roof = kind == CELL_BUILDING && isfinite(parts->roof_m[n]);
+            if (roof && !w->culture) h_m = (double)parts->roof_m[n];
+            if (kind == CELL_BUILDING && !roof) kind = CELL_BARE;
             w->out->h_m[at] = (float)h_m;
             w->out->kind[at] = kind;
             w->out->canopy_m[at] = kind == CELL_TREE && canopy_m > 0 ? (float)canopy_m : 0;
@@ -84,6 +88,17 @@ static void keep_window(Work *w, const SurfaceParts *parts, int task, int i0, in
         c.y_m = (float)((w->level.j0 + w->r0 - 0.5) * s + (double)c.y_m);
         w->crown[task][w->crowns[task]++] = c;
     }
+}
+
+/* Buildings whose middle is in the core of a window. */
+static Status add_buildings(Work *w, const SurfaceParts *parts, const SurfaceModel *model, int task)
+{
+    const int          i0 = task * core_cells - (int)model->column, j0 = w->row0 - (int)model->row;
+    const int          i1 = i0 + core_cells;
+    const double       s = w->level.spacing_m;
+    const SurfaceCore  core = {i0, j0, i1 < model->nx ? i1 : model->nx, j0 + w->rows};
+    const SurfacePlace place = {{(w->level.i0 - 0.5) * s, (w->level.j0 - 0.5) * s}, {s, 0}, {0, s}};
+    return culture_add_surface(&w->culture[task], parts, model, &place, &core);
 }
 
 static void take_window(void *user, int worker, int task)
@@ -121,6 +136,7 @@ static void take_window(void *user, int worker, int task)
     w->crown[task] = malloc(((size_t)parts.crown_count + 1) * sizeof **w->crown);
     if (w->crown[task]) keep_window(w, &parts, task, i0, nx, ny);
     else w->status[task] = STATUS_NO_MEMORY;
+    if (w->culture && w->status[task] == STATUS_OK) w->status[task] = add_buildings(w, &parts, &model, task);
 done:
     free(surface_m);
     free(bare_in_m);
@@ -187,6 +203,7 @@ Status surface_strip_make(SurfaceStrip *out, const SurfaceSources *from, int row
     Work         w = {.row0 = row0, .rows = rows, .out = &strip};
     elevation_stream_level(&w.level, from->surface, 0);
     w.margin = (int)ceil(take_apart_reach_m / w.level.spacing_m) + 1;
+    if (from->buildings) w.margin += (int)ceil(surface_building_most_m / w.level.spacing_m) + 2;
     w.r0 = row0 > w.margin ? row0 - w.margin : 0;
     w.r1 = row0 + rows + w.margin < w.level.ny ? row0 + rows + w.margin : w.level.ny;
     w.windows = (w.level.nx + core_cells - 1) / core_cells;
@@ -197,8 +214,10 @@ Status surface_strip_make(SurfaceStrip *out, const SurfaceSources *from, int row
     w.crown = calloc((size_t)w.windows, sizeof *w.crown);
     w.crowns = calloc((size_t)w.windows, sizeof *w.crowns);
     w.status = calloc((size_t)w.windows, sizeof *w.status);
-    const bool whole = strip.h_m && strip.kind && strip.canopy_m && w.crown && w.crowns && w.status;
-    Status     status = whole ? STATUS_OK : STATUS_NO_MEMORY;
+    if (from->buildings) w.culture = calloc((size_t)w.windows, sizeof *w.culture);
+    const bool whole =
+        strip.h_m && strip.kind && strip.canopy_m && w.crown && w.crowns && w.status && (w.culture || !from->buildings);
+    Status status = whole ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = read_models(&w, from);
     if (status == STATUS_OK && from->photo) status = read_colours(&w, from);
     if (status == STATUS_OK && !pool_run_unless_stopped(from->pool, w.windows, take_window, &w)) status = STATUS_IO;
@@ -212,7 +231,12 @@ Status surface_strip_make(SurfaceStrip *out, const SurfaceSources *from, int row
         for (int k = 0, at = 0; strip.crown && k < w.windows; at += w.crowns[k++])
             if (w.crowns[k] > 0) memcpy(strip.crown + at, w.crown[k], (size_t)w.crowns[k] * sizeof *strip.crown);
     }
+    for (int k = 0; w.culture && k < w.windows; k++) {
+        if (status == STATUS_OK) status = import_buildings_add(&strip.culture, &w.culture[k]);
+        culture_free(&w.culture[k]);
+    }
     for (int k = 0; w.crown && k < w.windows; k++) free(w.crown[k]);
+    free(w.culture);
     free(w.crown);
     free(w.crowns);
     free(w.status);

@@ -1,8 +1,10 @@
 /* terrain/import/terrain_import.c: files to a terrain store: plan, the levels around, level 0 strip by strip with what
  * covers it (terrain_cover.c). */
 #include "pitviper_file.h"
+#include "pitviper_output.h"
 #include "terrain/import/terrain_import_private.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <sys/statvfs.h>
 
@@ -155,6 +157,24 @@ static Status list_sources(StoreImport *m)
     return STATUS_OK;
 }
 
+/* Whether a file of buildings can be made and written, before hours of work. */
+static Status look_at_buildings(const StoreImport *m)
+{
+    static const double most_m = 2;
+    if (!*m->o->buildings) return STATUS_OK;
+    if (m->level.spacing_m > most_m) {
+        log_error(
+            "terrain import: --buildings: outlines need posts at most %.3g m apart, and these are %.3g; --spacing 2, "
+            "or leave it out",
+            most_m, m->level.spacing_m);
+        return STATUS_BAD_VALUE;
+    }
+    if (output_check(m->o->buildings, 0) == 0) return STATUS_OK;
+    log_error("terrain import: --buildings: cannot write %s: %s; choose another name", m->o->buildings,
+              output_reason(errno));
+    return STATUS_IO;
+}
+
 static Status plan(StoreImport *m)
 {
     StorePlan *p = &m->plan;
@@ -199,6 +219,8 @@ static Status plan(StoreImport *m)
         log_error("%s: the names of the files are too long to be recorded; name their folder instead", module);
         return STATUS_BAD_VALUE;
     }
+    status = look_at_buildings(m);
+    if (status != STATUS_OK) return status;
     p->posting_m = e.posting_m;
     p->geoid_m = e.geoid_m;
     p->options = m->options;
@@ -207,10 +229,14 @@ static Status plan(StoreImport *m)
              e.ellipsoidal ? "files above the ellipsoid"
                            : "files above the geoid (EGM96 unless --geoid), converted at each post");
     p->vertical_datum = m->datum;
-    snprintf(m->notes, sizeof m->notes, "%s%s%s", !m->surface ? "terrain model as it is" : "surface model taken apart ",
+    snprintf(m->notes, sizeof m->notes, "%s%s%s%s",
+             !m->surface ? "terrain model as it is" : "surface model taken apart ",
              !m->surface  ? ""
-             : m->terrain ? "with the terrain model beside it: bare ground, roofs as blocks, crowns listed"
-                          : "by its own shape: bare ground, roofs as blocks, crowns listed",
+             : m->terrain ? "with the terrain model beside it: bare ground, crowns listed"
+                          : "by its own shape: bare ground, crowns listed",
+             !m->surface        ? ""
+             : *m->o->buildings ? ", buildings beside it as records"
+                                : ", roofs as blocks",
              "; where files overlap the finest wins, of equals the one given first");
     p->provenance = m->notes;
     return STATUS_OK;
@@ -287,13 +313,15 @@ static Status count_kinds(StoreImport *m, int rows, const SurfaceStrip *strip)
 
 static Status make_strip(StoreImport *m, int row0, int rows)
 {
-    const SurfaceSources from = {m->surface, m->terrain, m->photo.count ? &m->photo : NULL, &m->frame, m->pool};
+    const SurfaceSources from = {m->surface, m->terrain, m->photo.count ? &m->photo : NULL,
+                                 &m->frame,  m->pool,    *m->o->buildings != 0};
     SurfaceStrip         strip = {0};
     const double         begun_s = wall_clock_s();
     Status               status = STATUS_OK;
     if (m->surface) {
         status = surface_strip_make(&strip, &from, row0, rows);
         if (status == STATUS_OK) status = count_kinds(m, rows, &strip);
+        if (status == STATUS_OK) status = import_buildings_add(&m->culture, &strip.culture);
     } else {
         strip.h_m = malloc((size_t)rows * (size_t)m->level.nx * sizeof *strip.h_m);
         status = STATUS_NO_MEMORY;
@@ -350,6 +378,7 @@ static Status finish(StoreImport *m, const char *path)
     if (status == STATUS_OK) status = store_open(&store, path);
     if (status == STATUS_OK)
         status = elevation_stream_report(&m->r.elevation, m->first, m->surface ? NULL : &store.elevation);
+    if (status == STATUS_OK && *m->o->buildings) status = import_buildings_write(m, &store);
     if (m->surface) m->r.elevation.voids = m->voids, m->r.elevation.voids_coarser = m->voids_coarser;
     store_close(&store);
     double cells = 0, posts = 0;
@@ -405,6 +434,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     for (int k = 0; k < 2; k++) free(m->list[k]);
     free(m->options);
     terrain_buildings_free(&m->buildings);
+    culture_free(&m->culture);
     if (sources) raster_sources_from(sources);
     work_stop_when(NULL);
     free(sources);

@@ -1,7 +1,7 @@
 /* terrain/import/terrain_import.h: a terrain store from any set of files that GDAL reads.
  *
  * Level 0 is made in strips of rows: memory grows with a strip (some 200 MB for 12 000 posts a row, twice that where a
- * surface model is taken apart), never with the whole. The same store for any number of threads. */
+ * surface model is taken apart, and two thirds more with its buildings as records), never with the whole. The same store for any number of threads. */
 #ifndef TERRAIN_IMPORT_TERRAIN_IMPORT_H
 #define TERRAIN_IMPORT_TERRAIN_IMPORT_H
 
@@ -16,6 +16,8 @@ typedef struct TerrainOptions {
     /* lists of files and folders, separated by commas; empty: none */
     char elevation[terrain_paths_size], surface[terrain_paths_size], cover[terrain_paths_size],
         photo[terrain_paths_size], canopy_height[terrain_path_size], canopy_cover[terrain_path_size];
+    char buildings[terrain_path_size]; /* GeoJSON that the buildings of surface models are written to; empty: they are
+                                          roofs of the ground */
     char cover_table[terrain_path_size], geoid[terrain_path_size]; /* cover_table: empty: chosen; geoid: empty: EGM96 */
     char unit[16], srs[128],
         nodata[32]; /* what elevation and surface files are taken to have where nothing stands after their name */
@@ -30,8 +32,8 @@ typedef struct TerrainOptions {
 
 void terrain_options_default(TerrainOptions *out);
 /* One option by its name: elevation (added to those before), surface, cover, cover-table, photo, canopy-height,
- * canopy-cover, geoid, sources-from, vertical, unit, srs, nodata, spacing, origin, size, horizon, most-gb. False: *why
- * says what is accepted, in static storage, and nothing has changed. */
+ * canopy-cover, buildings, geoid, sources-from, vertical, unit, srs, nodata, spacing, origin, size, horizon, most-gb.
+ * False: *why says what is accepted, in static storage, and nothing has changed. */
 bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, const char *value);
 /* The names in a list of elevation or surface files, each followed by what the options choose for it (raster.h).
  * Returns false when that is too long. */
@@ -65,6 +67,8 @@ typedef struct TerrainReport {
     CoverReport     cover;           /* posting_m 0: there is no cover */
     double          photo_posting_m; /* 0: there is no photograph */
     double          canopy_scale_m;  /* unit of the numbers in a canopy height file; 0: there is none */
+    int             records;         /* buildings that TerrainOptions.buildings has */
+    int             records_left;    /* patches of roof that made no outline */
     double          kind_share[3];   /* shares of the posts: bare, building, tree */
     double          seconds[4]; /* time of each stage: levels around level 0, posts, cover and photograph, writing */
     bool            stopped;    /* whether the progress function stopped it */
@@ -75,8 +79,9 @@ typedef struct TerrainReport {
 Status terrain_import(TerrainReport *out, const TerrainOptions *options, const char *path, Pool *pool,
                       const TerrainWatch *watch);
 /* Makes a store again with the options that it has, on all processors. options: as TerrainStore or store_recall has
- * them. A store may come from a stranger: only what lies in its own folder is read, also of what those files name;
- * anywhere: whatever it names. A requested stop ends it, and leaves the store as it was. */
+ * them. A store may come from a stranger: only what lies in its own folder is read, also of what those files name, and
+ * its file of buildings replaces only one that an import wrote there; anywhere: whatever it names. A requested stop
+ * ends it, and leaves the store as it was. */
 Status terrain_store_rebuild(const char *path, const char *options, bool anywhere);
 /* Whether a store's options name a source outside of its own folder. outside: the first such source. */
 bool terrain_store_foreign(char *outside, size_t outside_size, const char *path, const char *options);

@@ -3,11 +3,13 @@
  * terrain_import.c   the plan, the levels, and the end
  * terrain_cover.c    what covers the ground
  * ground_rows.c      pixels of files in rows of cells
- * surface_strip.c    strips of a surface model taken apart, and buildings counted in them */
+ * surface_strip.c    strips of a surface model taken apart, and buildings counted in them
+ * import_buildings.c buildings of all strips as records, on the ground of the store */
 #ifndef TERRAIN_IMPORT_TERRAIN_IMPORT_PRIVATE_H
 #define TERRAIN_IMPORT_TERRAIN_IMPORT_PRIVATE_H
 
 #include "terrain/bare_earth/take_apart.h"
+#include "terrain/culture/culture.h"
 #include "terrain/elevation/raster.h"
 #include "terrain/import/terrain_import.h"
 #include "terrain/surface.h"
@@ -48,15 +50,17 @@ typedef struct SurfaceSources {
     const RasterSet  *photo; /* NULL: none */
     const LocalFrame *frame;
     Pool             *pool;
+    bool              buildings; /* whether they are wanted as records, with bare ground below them */
 } SurfaceSources;
 
 /* Rows of level 0, [rows][nx], and crowns in ENU, which are allocated. */
 typedef struct SurfaceStrip {
-    float   *h_m;      /* heights above the ellipsoid of bare ground, and of roofs where there are buildings */
+    float   *h_m;      /* heights above the ellipsoid of bare ground, and of roofs unless buildings are records */
     uint8_t *kind;     /* CellKind */
     float   *canopy_m; /* height of the surface above bare ground where kind is CELL_TREE; 0 elsewhere */
     int      crowns;
     Crown   *crown;
+    Culture  culture;              /* buildings in ENU, their base_m above the ellipsoid */
     long     voids, voids_coarser; /* posts filled from their surroundings, and from a coarser file */
 } SurfaceStrip;
 
@@ -89,9 +93,18 @@ typedef struct StoreImport {
     int          strip_rows;
     long         kinds[3];
     TerrainBuildings buildings;
+    Culture          culture; /* of all strips so far, as SurfaceStrip has it */
     long             voids, voids_coarser;
     TerrainReport    r;
 } StoreImport;
+
+/* ---- import_buildings.c ---- */
+
+/* Adds all records of buildings. */
+Status import_buildings_add(Culture *to, const Culture *from);
+/* Writes them as GeoJSON, from south to north, on the floors that the ground of the store gives them, with the eaves
+ * and ridges where they were. */
+Status import_buildings_write(StoreImport *m, const TerrainStore *store);
 
 /* ---- terrain_cover.c ---- */
 

@@ -23,6 +23,7 @@ static const struct Row {
     {"photo", LIST, TEXT_AT(photo), 0, 0, 0, "a list of files within 16 383 octets"},
     {"canopy-height", LIST, TEXT_AT(canopy_height), 0, 0, 0, "a file, or FILE:BAND"},
     {"canopy-cover", LIST, TEXT_AT(canopy_cover), 0, 0, 0, "a file, or FILE:BAND"},
+    {"buildings", LIST, TEXT_AT(buildings), 0, 0, 0, "one file whose name ends in .geojson"},
     {"cover-table", LIST, TEXT_AT(cover_table), 0, 0, 0, "worldcover, nlcd, fbfm40, dynamicworld, corine, or a CSV"},
     {"geoid", LIST, TEXT_AT(geoid), 0, 0, 0, "a file in PROJ's .gtx form"},
     {"sources-from", LIST, TEXT_AT(sources_from), 0, 0, 0, "a list of folders"},
@@ -65,6 +66,14 @@ static bool take_list(char *to, size_t size, const char *value, bool add)
     return true;
 }
 
+/* A name that files of other kinds do not have: a store's options have it written. */
+static bool is_one_geojson(const char *value)
+{
+    static const char ending[] = ".geojson";
+    const size_t      length = strlen(value);
+    return length >= sizeof ending && !strpbrk(value, ",@") && strcmp(value + length - strlen(ending), ending) == 0;
+}
+
 bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, const char *value)
 {
     for (int k = 0; k < row_count; k++) {
@@ -75,6 +84,7 @@ bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, 
         *why = row->why;
         switch (row->kind) {
         case LIST:
+            if (at == o->buildings && !is_one_geojson(value)) return false;
             return take_list(at, row->size, value, k < 4);
         case CHOICE:
             for (int v = 0; v < 3; v++)
@@ -116,6 +126,8 @@ bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, 
 const char *terrain_options_fault(const TerrainOptions *o)
 {
     if (!*o->elevation && !*o->surface) return "names no elevation: give a terrain model, or --surface";
+    if (*o->buildings && !*o->surface)
+        return "names a file of buildings, which are found in surface models: give --surface";
     return NULL;
 }
 

@@ -4,6 +4,7 @@
 #include "terrain/elevation/raster.h"
 #include "terrain/import/terrain_import.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 
@@ -36,14 +37,15 @@ static bool lies_within(char *name, const char *folder)
     return begins_with_folder(name, folder) && !strstr(name, "/..") && strncmp(name, "/vsi", 4) != 0;
 }
 
-/* Whether all sources lie within a folder. Links are followed; a file that does not exist is judged by its name; a name
- * that is not a file's (on a server, in an archive) lies outside. outside: the first source that does, "" when none
- * does. */
+/* Whether all sources, and what is written beside the store, lie within a folder. Links are followed; a file that does
+ * not exist is judged by its name; a name that is not a file's (on a server, in an archive) lies outside. outside: the
+ * first source that does, "" when none does. */
 static bool sources_within(char *outside, size_t outside_size, const TerrainOptions *o, const char *folder)
 {
     const char *const lists[] = {
         o->elevation,     o->surface,      o->cover, o->photo,
-        o->canopy_height, o->canopy_cover, o->geoid, strpbrk(o->cover_table, "./") ? o->cover_table : ""};
+        o->canopy_height, o->canopy_cover, o->geoid, strpbrk(o->cover_table, "./") ? o->cover_table : "",
+        o->buildings};
     *outside = 0;
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
         for (const char *at = lists[k]; *at;) {
@@ -57,6 +59,22 @@ static bool sources_within(char *outside, size_t outside_size, const TerrainOpti
             return false;
         }
     return true;
+}
+
+/* Whether a file of buildings that a store names may be written without a word of the user's: there is none, or it is
+ * one of an import (culture_write_geojson). */
+static bool is_replaceable(const char *path)
+{
+    static const char begins[] = "{\"type\": \"FeatureCollection\", \"features\": [\n";
+    static const char feature[] = "{\"type\": \"Feature\", \"id\": \"";
+    enum { length = sizeof begins - 1, whole = sizeof begins - 1 + sizeof feature - 1 };
+    char  text[whole];
+    FILE *file = *path ? fopen(path, "rb") : NULL;
+    if (!file) return !*path || errno == ENOENT;
+    const size_t got = fread(text, 1, whole, file);
+    fclose(file);
+    return got >= length && memcmp(text, begins, length) == 0 &&
+           (got < whole || memcmp(text + length, feature, whole - length) == 0);
 }
 
 /* ---- made again ------------------------------------------------------------------------------- */
@@ -109,6 +127,13 @@ Status terrain_store_rebuild(const char *path, const char *options, bool anywher
             log_error("terrain.store: %s is not made again: it names %s, outside its own folder; where you trust that, "
                       "`pitviper terrain again %s` makes it",
                       path, outside, path);
+    }
+    if (status == STATUS_OK && !anywhere && !is_replaceable(o->buildings)) {
+        log_error(
+            "terrain.store: %s is not made again: it would replace %s, which is no file of an import; where that is "
+            "right, `pitviper terrain again %s` does it",
+            path, o->buildings, path);
+        status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK) status = pool_create(&pool, thread_processors());
     if (status == STATUS_OK) {

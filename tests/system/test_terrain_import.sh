@@ -36,6 +36,23 @@ check "quiet: nothing said" [ ! -s "$tmp/stdout" ]
 run terrain info "$tmp/b.store"
 check "one thread: the same content" said "${content:-none}"
 
+# a surface model of two houses: records beside the store, which a node shows, and bare ground
+sheet town 120 100 11 46 1e-5 '200 + (i > 20 && i < 38 && j > 30 && j < 44 ? 6 : i > 70 && i < 85 && j > 60 && j < 72 ? 4 : 0)'
+run terrain import --surface "$tmp/town.asc" -o "$tmp/town.store" "${few[@]}" --spacing 1 --buildings "$tmp/town.geojson"
+check "buildings: two, said" eval '[ $code = 0 ] && said "town.geojson: 2 buildings with outlines and roofs"'
+run terrain culture "$tmp/town.geojson" --store "$tmp/town.store"
+check "buildings: read as they are" eval 'said "^buildings: 2:" && said "height stated of 2"'
+run terrain import --surface "$tmp/town.asc" -o "$tmp/town2.store" "${few[@]}" --spacing 1 --buildings "$tmp/town.geojson" --json
+check "buildings: an existing file is not replaced" eval '[ $code != 0 ] && complained overwrite && [ ! -e "$tmp/town2.store" ]'
+cp "$tmp/town.geojson" "$tmp/town.kept"
+run terrain import --surface "$tmp/town.asc" -o "$tmp/town.store" "${few[@]}" --spacing 1 --buildings "$tmp/town.geojson" --json --overwrite --threads 1
+check "buildings: in JSON" eval 'grep -q "\"building_records\": 2" "$tmp/stdout"'
+check "buildings: one thread, the same" cmp -s "$tmp/town.geojson" "$tmp/town.kept"
+run terrain again "$tmp/town.store"
+check "buildings: again the same" eval '[ $code = 0 ] && cmp -s "$tmp/town.geojson" "$tmp/town.kept"'
+run terrain import "$tmp/west.asc" -o "$tmp/x.store" "${few[@]}" --buildings "$tmp/x.geojson"
+check "buildings: only of surface models" eval '[ $code != 0 ] && complained "give --surface"'
+
 # a file that names others: in its own folder, or where that is allowed
 mkdir "$tmp/own"
 printf '<VRTDataset rasterXSize="90" rasterYSize="120"><SRS>EPSG:4326</SRS><GeoTransform>11,1e-5,0,46.0012,0,-1e-5</GeoTransform>
@@ -73,7 +90,7 @@ check "nothing is left of what failed" [ -z "$(ls "$tmp" | grep '^x\.store')" ]
 run terrain frobnicate
 check "an unknown action is named" complained frobnicate
 run terrain import --help
-for option in --surface --cover --cover-table --photo --canopy-height --canopy-cover --vertical --geoid --origin --size --spacing \
+for option in --surface --buildings --cover --cover-table --photo --canopy-height --canopy-cover --vertical --geoid --origin --size --spacing \
               --horizon --out --overwrite --threads --sources-from --most-gb; do
     check "terrain --help names $option" grep -q -- "$option" "$tmp/stdout"
 done

@@ -65,7 +65,7 @@ static Culture taken(const float *surface_m, double cell_m, const SurfacePlace *
                                 .kind = malloc(side * side)};
     Culture            culture = {0};
     CHECK(take_apart_surface(&parts, &model) == STATUS_OK);
-    CHECK(culture_add_surface(&culture, &parts, &model, place) == STATUS_OK);
+    CHECK(culture_add_surface(&culture, &parts, &model, place, NULL) == STATUS_OK);
     free(parts.bare_m), free(parts.roof_m), free(parts.kind), free(parts.crown);
     return culture;
 }

@@ -417,6 +417,7 @@ static void options_are_a_text_and_back(void **state)
     const char              *why;
     int                      line;
     static const char *const given[][2] = {{"surface", "/a/b c.tif@ellipsoid"},
+                                           {"buildings", "/a/b c.geojson"},
                                            {"elevation", "/x.tif"},
                                            {"elevation", "/y.tif:3"},
                                            {"cover-table", "nlcd"},
@@ -441,6 +442,8 @@ static void options_are_a_text_and_back(void **state)
         CHECK(!terrain_options_set(&o, &why, wrong[k][0], wrong[k][1]));
     CHECK(!terrain_options_parse(&back, &why, &line, "elevation /x.tif\nsize 1\n") && line == 2);
     CHECK(!terrain_options_parse(&back, &why, &line, "size 1x1\n"));
+    CHECK(!terrain_options_parse(&back, &why, &line, "elevation /x.tif\nbuildings /a.geojson\n") &&
+          strstr(why, "give --surface"));
 }
 
 static bool stop_soon(void *user, const char *stage, double share)

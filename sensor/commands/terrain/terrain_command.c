@@ -118,7 +118,7 @@ static void print_classes(const CoverReport *cover)
     log_print("\n");
 }
 
-static void print_words(const char *store, const TerrainReport *r, double seconds)
+static void print_words(const char *store, const char *buildings, const TerrainReport *r, double seconds)
 {
     const ElevationReport *e = &r->elevation;
     log_print("%s: %.1f M posts, %.3g m apart over %.2f x %.2f km, from %d file%s of posts %.3g m apart\n", store,
@@ -134,6 +134,12 @@ static void print_words(const char *store, const TerrainReport *r, double second
                   r->beside ? " with the terrain model beside it" : " by its own shape", 100 * r->kind_share[0],
                   100 * r->kind_share[1], (unsigned long long)r->store.buildings, 100 * r->kind_share[2],
                   (unsigned long long)r->store.crowns);
+    if (*buildings) {
+        log_print("%s: %d buildings with outlines and roofs, bare ground below them (terrain.buildings)", buildings,
+                  r->records);
+        if (r->records_left > 0) log_print("; %d patches of roof make none", r->records_left);
+        log_print("\n");
+    }
     if (e->places > 0)
         log_print("resampling: %.3f m rms, p99 %.3f, at most %.3f against the files\n", e->error_rms_m, e->error_p99_m,
                   e->error_max_m);
@@ -148,7 +154,8 @@ static void print_words(const char *store, const TerrainReport *r, double second
               1e-6 * (double)r->store.octets, seconds, r->seconds[0], r->seconds[1], r->seconds[2], r->seconds[3]);
 }
 
-static Status print_json(const char *store, const TerrainReport *r, double seconds, const SourceLines *lines)
+static Status print_json(const char *store, const char *buildings, const TerrainReport *r, double seconds,
+                         const SourceLines *lines)
 {
     const ElevationReport *e = &r->elevation;
     json_t                *all = json_object(), *classes = json_object();
@@ -168,6 +175,11 @@ static Status print_json(const char *store, const TerrainReport *r, double secon
     }
     json_set_number(all, "quantisation_max_m", r->store.worst_m[0]);
     json_object_set_new(all, "buildings", json_integer((json_int_t)r->store.buildings));
+    if (*buildings) {
+        json_object_set_new(all, "buildings_file", json_string(buildings));
+        json_object_set_new(all, "building_records", json_integer(r->records));
+        json_object_set_new(all, "building_records_left_out", json_integer(r->records_left));
+    }
     json_object_set_new(all, "crowns", json_integer((json_int_t)r->store.crowns));
     for (int s = 1; s < SURFACE_COUNT; s++)
         if (r->cover.share[s] > 0) json_set_number(classes, surface_name((SurfaceClass)s), r->cover.share[s]);
@@ -184,10 +196,11 @@ static Status print_json(const char *store, const TerrainReport *r, double secon
 }
 
 /* STATUS_NO_MEMORY: nothing was printed. */
-static Status report(const char *store, const TerrainReport *r, double seconds, const SourceLines *lines)
+static Status report(const char *store, const char *buildings, const TerrainReport *r, double seconds,
+                     const SourceLines *lines)
 {
-    if (lines->json) return print_json(store, r, seconds, lines);
-    print_words(store, r, seconds);
+    if (lines->json) return print_json(store, buildings, r, seconds, lines);
+    print_words(store, buildings, r, seconds);
     return STATUS_OK;
 }
 
@@ -261,6 +274,8 @@ static const char help[] =
     "sources\n"
     "  --surface FILES        surface models, roofs and crowns included: taken apart into bare ground, buildings and\n"
     "                         trees, with the help of SOURCE where that is given; posts up to 4 m apart\n"
+    "  --buildings FILE.geojson  the buildings of --surface as records, outlines with heights and roofs, for terrain.buildings;\n"
+    "                         the ground is then bare below them; posts up to 2 m apart\n"
     "  --cover FILES          land cover classes\n"
     "  --cover-table TABLE    what its codes mean: worldcover, nlcd, fbfm40, dynamicworld, corine or a CSV (the one with\n"
     "                         most of the codes)\n"
@@ -325,6 +340,7 @@ static int parse(Wanted *w, int argc, char **argv)
                                             {"horizon", 1, NULL, VALUE + 14},
                                             {"sources-from", 1, NULL, VALUE + 15},
                                             {"most-gb", 1, NULL, VALUE + 16},
+                                            {"buildings", 1, NULL, VALUE + 17},
                                             {NULL, 0, NULL, 0}};
     enum { own_options = 5 };
     const char *why = NULL;
@@ -401,6 +417,8 @@ static int import_command(int argc, char **argv)
         return code;
     }
     Status status = overwrite_file("terrain import", w->out, w->overwrite);
+    if (status == STATUS_OK && *w->terrain.buildings)
+        status = overwrite_file("terrain import", w->terrain.buildings, w->overwrite);
     if (status == STATUS_OK && output_check(w->out, 0) != 0) {
         log_error("terrain import: cannot write %s: %s; choose another name with -o", w->out, output_reason(errno));
         status = STATUS_IO;
@@ -411,7 +429,8 @@ static int import_command(int argc, char **argv)
     stop_by_signals();
     if (status == STATUS_OK) status = terrain_import(&r, &w->terrain, w->out, pool, &watch);
     log_status(NULL);
-    if (status == STATUS_OK) status = report(w->out, &r, wall_clock_s() - watching.begun_s, &watching.sources);
+    if (status == STATUS_OK)
+        status = report(w->out, w->terrain.buildings, &r, wall_clock_s() - watching.begun_s, &watching.sources);
     source_lines_free(&watching.sources);
     if (status == STATUS_NO_MEMORY) log_error("terrain import: out of memory; --size takes a part");
     if (r.stopped) log_warn("terrain import: stopped: %s is as it was", w->out);
