@@ -1,4 +1,5 @@
-/* entities/scenery/clutter_table.c: what stands about, how densely and how warm: etc/clutter.csv. */
+/* entities/scenery/clutter_table.c: what stands about, how densely and how warm: etc/clutter.csv and others of its
+ * format. */
 #include "entities/scenery/scenery_clutter_private.h"
 #include "entities/shapes/parametric.h"
 
@@ -80,6 +81,18 @@ Status clutter_table_read(ClutterTable *out, const char *path)
     if (status == STATUS_OK) *out = *table;
     free(table);
     return status;
+}
+
+bool clutter_table_path(char *out, size_t size, const char *named)
+{
+    static const struct {
+        const char *name, *file;
+    } built_in[] = {{"countryside", "clutter.csv"}, {"rear_area", "clutter_rear_area.csv"}};
+    for (size_t k = 0; k < sizeof built_in / sizeof *built_in; k++)
+        if (strcmp(named, built_in[k].name) == 0) return etc_path(out, size, built_in[k].file);
+    if (strpbrk(named, "/.") && snprintf(out, size, "%s", named) < (int)size) return true;
+    log_error("clutter: no table of that name: %s; next: countryside, rear_area or the path of a CSV", named);
+    return false;
 }
 
 Status scenery_clutter_check(const char *path)

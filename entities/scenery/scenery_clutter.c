@@ -8,7 +8,8 @@ static const double widest_square_m = 65536;
 
 ClutterConfig clutter_default_config(void)
 {
-    return (ClutterConfig){.density = 1, .most = 20000, .most_driving = 256, .most_states = 256, .sag_m = 0.01};
+    return (ClutterConfig){
+        .density = 1, .most = clutter_most_objects, .most_driving = 256, .most_states = 256, .sag_m = 0.01};
 }
 
 /* ---- numbers ------------------------------------------------------------------------------------ */
@@ -83,11 +84,11 @@ Status scenery_add_clutter(Scenery *scenery, const ClutterConfig *config)
     char   path[4096];
     Status status = check(config);
     if (status != STATUS_OK || !(config->density > 0) || config->most == 0) return status;
-    if (!config->table && !etc_path(path, sizeof path, "clutter.csv")) return STATUS_BAD_VALUE;
+    if (!clutter_table_path(path, sizeof path, config->table ? config->table : "countryside")) return STATUS_BAD_VALUE;
     ClutterWork *work = calloc(1, sizeof *work);
     if (!work) return STATUS_NO_MEMORY;
     work->config = config;
-    status = clutter_table_read(&work->table, config->table ? config->table : path);
+    status = clutter_table_read(&work->table, path);
     if (status == STATUS_OK) status = clutter_make_variants(work);
     if (status == STATUS_OK) status = clutter_spots_create(&work->spots, config);
     if (status == STATUS_OK) status = clutter_place_areas(work);

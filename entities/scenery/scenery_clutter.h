@@ -30,16 +30,19 @@ typedef struct ClutterConfig {
     const Landscape *landscape;
     const Culture   *culture;          /* indexed; NULL: none, then the plots of an invented landscape have houses */
     const LandscapeEvidence *evidence; /* NULL: that of the landscape */
-    const char              *table;    /* NULL: etc/clutter.csv */
+    const char              *table;    /* name or path, as of clutter_table_path; NULL: countryside */
     int    most;         /* objects, 0 .. clutter_most_objects; of more those of lowest rank, a number of each place */
     int    most_driving; /* of them, 0 .. clutter_most_movers */
     int    most_states;  /* that are solved for heat; with more, headings and times since a stop are told apart less */
     double sag_m;        /* chord error of the shapes */
 } ClutterConfig;
 
-/* Density 1, 20000 objects, 256 that drive, 256 states, 0.01 m; the rest is zero. */
+/* Density 1, 100000 objects, 256 that drive, 256 states, 0.01 m; the rest is zero. */
 ClutterConfig clutter_default_config(void);
 
+/* The file of a table: countryside and rear_area are those of etc; what else there is, with a `.` or `/` in it, is a
+ * path. False, and logged: neither, or no etc. */
+bool clutter_table_path(char *out, size_t size, const char *named);
 /* Whether a table can be used; logs what is wrong with it. */
 Status scenery_clutter_check(const char *path);
 /* Appends models, objects, states and movers. Models are added for what stands alone. 0.1 s for 1000 objects on 10 km2.

@@ -159,7 +159,7 @@ typedef struct PitviperMemoryTarget {
     uint16_t site, application, entity; /* 0 */
     uint16_t class_number;              /*   6 as category_id of coco.json */
     uint32_t plane_value;               /*   8 of its pixels in the truth plane `entity` */
-    uint32_t flags;                /*  12 hidden, the larger part: 1 by the ground, 2 by another entity, 4 by plants */
+    uint32_t flags; /*  12 hidden, the larger part: 1 by the ground, 2 by another entity, 4 by plants, 8 by scenery */
     char     class_name[24];       /*  16 `tank`, `truck` ... */
     char     marking[16];          /*  40 raw octets */
     char     type[32];             /*  56 entity type, `1.1.222.1.2.0.0` */

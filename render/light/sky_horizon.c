@@ -5,7 +5,13 @@
 
 #include <stdlib.h>
 
-enum { sectors = sky_horizon_sectors, tile_side = 32, tile_cells = tile_side * tile_side, most_heights = 16 << 20 };
+enum {
+    sectors = sky_horizon_sectors,
+    tile_side = 32,
+    tile_cells = tile_side * tile_side,
+    most_heights = 16 << 20,
+    most_steps = 32
+};
 static const double reach_m = 80, finest_m = 2, height_step_m = 0.25;
 static const double before_cells = 1.2;
 static const float  no_top_m = -1e9f;
@@ -26,12 +32,19 @@ struct SkyHorizons {
 
 /* ---- making -------------------------------------------------------------------------------------- */
 
+typedef struct Step {
+    int   x, y;
+    float per_m; /* 1 / distance */
+} Step;
+
 typedef struct Making {
     SkyHorizons     *h;
     const Elevation *elevation;
     float           *top_m; /* [ny][nx] */
     int              nx, ny;
     int             *tile; /* [tiles]: where each lies */
+    int              steps;
+    Step             step[2 * sectors][most_steps];
 } Making;
 
 static bool is_building(const Scenery *s, int k) { return s->object[k].kind == SCENERY_BUILDINGS; }
@@ -94,6 +107,22 @@ static void uncovered(int at[2], const Making *m, int i, int j)
 }
 
 /* Two directions a sector, each in growing steps. */
+static void list_ways(Making *m)
+{
+    const double cell_m = m->h->cell_m;
+    for (int k = 0; k < 2 * sectors; k++) {
+        const double azimuth = 2 * pi_rad * (0.5 * k - 0.25) / sectors;
+        double       before = 0;
+        m->steps = 0;
+        for (double way = 1; way * cell_m <= reach_m && m->steps < most_steps; way += way < 4 ? 1 : 0.25 * way) {
+            Step *to = &m->step[k][m->steps++];
+            to->x = (int)lround(way * sin(azimuth)), to->y = (int)lround(way * cos(azimuth));
+            to->per_m = (float)(1 / (0.5 * (before + way) * cell_m)); /* its side lies between the two */
+            before = way;
+        }
+    }
+}
+
 static void fill_cell(Cell *out, const Making *m, int i, int j)
 {
     const double cell_m = m->h->cell_m, x_m = m->h->x0_m + i * cell_m, y_m = m->h->y0_m + j * cell_m;
@@ -101,22 +130,20 @@ static void fill_cell(Cell *out, const Making *m, int i, int j)
     *out = (Cell){.ground_m = (float)elevation_height(m->elevation, x_m, y_m, NULL)};
     uncovered(at, m, i, j);
     for (int s = 0; s < sectors; s++) {
-        double sum = 0, height_m = 0;
-        for (int k = 0; k < 2; k++) {
-            const double azimuth = 2 * pi_rad * (s + 0.25 + 0.5 * k - 0.5) / sectors;
-            double       tangent = 0, before = 0;
-            for (double way = 1; way * cell_m <= reach_m; before = way, way += way < 4 ? 1 : 0.25 * way) {
-                const int    x = at[0] + (int)lround(way * sin(azimuth)), y = at[1] + (int)lround(way * cos(azimuth));
-                const double rise_m = (double)(top_at(m, x, y) - out->ground_m);
-                const double here = rise_m / (0.5 * (before + way) * cell_m); /* its side lies between the two */
-                if (!(here > tangent)) continue;
-                tangent = here;
-                height_m = fmax(height_m, rise_m);
+        float sum = 0, height_m = 0;
+        for (int k = 2 * s; k < 2 * s + 2; k++) {
+            float tangent = 0;
+            for (int n = 0; n < m->steps; n++) {
+                const Step *step = &m->step[k][n];
+                const float rise_m = top_at(m, at[0] + step->x, at[1] + step->y) - out->ground_m;
+                if (!(rise_m * step->per_m > tangent)) continue;
+                tangent = rise_m * step->per_m;
+                height_m = rise_m > height_m ? rise_m : height_m;
             }
-            sum += 0.5 * tangent / (1 + tangent);
+            sum += 0.5f * tangent / (1 + tangent);
         }
-        out->slope[s] = (uint8_t)lround(255 * sum);
-        out->height[s] = (uint8_t)lround(clamp(height_m / height_step_m, 1, 255));
+        out->slope[s] = (uint8_t)(255 * sum + 0.5f);
+        out->height[s] = (uint8_t)clamp((double)height_m / height_step_m + 0.5, 1, 255);
     }
 }
 
@@ -133,21 +160,25 @@ static void fill_tile(void *user, int worker, int task)
 static void mean_wall(SkyHorizons *h, const Scenery *s, const Materials *materials)
 {
     double area = 0;
-    for (int m = 0; m < s->models; m++)
-        for (int t = 0; t < s->model[m].triangle_count; t++) {
-            const Model    *model = &s->model[m];
-            const uint32_t *v = model->triangle[t];
-            double          ab[3], ac[3], n[3];
-            v3_sub(ab, model->vertex[v[1]], model->vertex[v[0]]);
-            v3_sub(ac, model->vertex[v[2]], model->vertex[v[0]]);
-            v3_cross(n, ab, ac);
-            const double of = v3_length(n);
-            const int    row = materials_find(materials, model->part[model->triangle_part[t]].material);
-            if (!(fabs(n[2]) < 0.5 * of) || row < 0) continue;
-            area += of;
-            for (int c = 0; c < optical_channel_count; c++)
-                h->wall_rho[c] += of * (double)materials->material[row].rho[c];
+    for (int m = 0; m < s->models; m++) {
+        const Model *model = &s->model[m];
+        for (int p = 0; p < model->part_count; p++) {
+            const ModelPart *part = &model->part[p];
+            const int        row = materials_find(materials, part->material);
+            double           upright = 0;
+            for (int t = part->first_triangle; t < part->first_triangle + part->triangle_count; t++) {
+                const uint32_t *v = model->triangle[t];
+                double          ab[3], ac[3], n[3];
+                v3_sub(ab, model->vertex[v[1]], model->vertex[v[0]]);
+                v3_sub(ac, model->vertex[v[2]], model->vertex[v[0]]);
+                v3_cross(n, ab, ac);
+                upright += fabs(n[2]) < 0.5 * v3_length(n) ? v3_length(n) : 0;
+            }
+            area += row < 0 ? 0 : upright;
+            for (int c = 0; c < optical_channel_count && row >= 0; c++)
+                h->wall_rho[c] += upright * (double)materials->material[row].rho[c];
         }
+    }
     for (int c = 0; c < optical_channel_count && area > 0; c++) h->wall_rho[c] /= area;
 }
 
@@ -161,6 +192,7 @@ static Status fill(SkyHorizons *h, const SceneryTracer *tracer, const Elevation 
     h->cell = malloc(((size_t)h->tiles * tile_cells + 1) * sizeof *h->cell);
     if (!m.top_m || !m.tile || !h->cell) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
+        list_ways(&m);
         for (size_t k = 0; k < heights; k++) m.top_m[k] = no_top_m;
         scenery_tracer_tops(m.top_m, tracer, m.nx, m.ny, h->x0_m, h->y0_m, h->cell_m);
         for (int t = 0; t < h->tiles_x * h->tiles_y; t++)
@@ -247,76 +279,129 @@ static F32x8 above(F32x8 tangent, F32x8 aside, F32x8 up)
     return f32x8_max(aside * (left - tangent * cosine2) + up * cosine2, f32x8_set(0));
 }
 
-/* Of one cell at this height; 1: none. before_m: the cell is that far before the place, along the normal: what makes
- * its horizon is as much farther from the place. */
-static float share_of(const Cell *cell, float z_m, F32x8 aside, F32x8 up, float open, double before_m)
+static float ground_under(const SkyHorizons *h, double x_m, double y_m, float z_m)
 {
-    if (!cell || !(open > 1e-4f)) return 1;
+    const Cell *cell = cell_at(h, (int)((x_m - h->x0_m) / h->cell_m), (int)((y_m - h->y0_m) / h->cell_m));
+    return cell ? cell->ground_m : z_m;
+}
+
+/* What a place sees, of a sky that is as bright everywhere. */
+typedef struct Seen {
+    float share;      /* that arrives */
+    float lit;        /* of what buildings fill: mean cosine of the sun on their walls */
+    float own_high_m; /* of what is behind the place */
+} Seen;
+
+static const float sine[8] = {0, 0.70710678f, 1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f};
+static const float cosine[8] = {1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f, 0, 0.70710678f};
+
+typedef struct Facet {
+    F32x8 aside, behind, up, sunny, all; /* of sectors: normal along them and against, walls that face us; open light */
+    float open;
+} Facet;
+
+/* Adds one cell, of this weight, for a place at this height. before_m: the cell is that far before the place, along the
+ * normal: what makes its horizon is as much farther from the place. */
+static void add_cell(Seen *to, const Cell *cell, float weight, float z_m, const Facet *f, double before_m)
+{
+    if (!cell || !(f->open > 1e-4f)) {
+        to->share += weight;
+        return;
+    }
     const F32x8 code = f32x8_of_ints(i32x8_of_bytes(cell->slope)) * f32x8_set(1.0 / 255);
     const F32x8 high = f32x8_of_ints(i32x8_of_bytes(cell->height)) * f32x8_set(height_step_m);
     const F32x8 over = _mm256_set1_ps(z_m - cell->ground_m > 0 ? z_m - cell->ground_m : 0);
     const F32x8 near = code / f32x8_max(f32x8_set(1) - code, f32x8_set(1e-3));
-    const F32x8 more = f32x8_fma(near * f32x8_set(before_m), f32x8_max(aside, f32x8_set(0)) / high, f32x8_set(1));
+    const F32x8 more = f32x8_fma(near * f32x8_set(before_m), f32x8_max(f->aside, f32x8_set(0)) / high, f32x8_set(1));
     const F32x8 tangent = near / more * f32x8_clamp(f32x8_set(1) - over / high, 0, 1);
-
-    const float share = sum8(above(tangent, aside, up)) / open;
-    return share < 1 ? share : 1;
+    const F32x8 left = f32x8_min(above(tangent, f->aside, f->up), f->all), hidden = f->all - left;
+    to->share += weight * sum8(left) / f->open;
+    to->lit += weight * sum8(hidden * f->sunny) / f->open;
+    to->own_high_m += weight * sum8(f32x8_and(high * f->behind, f32x8_greater(code, f32x8_set(0.2))));
 }
 
-/* A place somewhat before its surface, so that its cell is not that of what it is on. */
-static float share_at(const SkyHorizons *h, double x_m, double y_m, float z_m, const float n[3])
+/* A place somewhat before its surface, so that its cell is not that of what it is on. sun_enu: NULL: it is not asked
+ * for. */
+static Seen seen_at(const SkyHorizons *h, double x_m, double y_m, float z_m, const float n[3], const float *sun_enu)
 {
-    static const float sine[8] = {0, 0.70710678f, 1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f};
-    static const float cosine[8] = {1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f, 0, 0.70710678f};
-    const double       x = (x_m - h->x0_m) / h->cell_m + before_cells * (double)n[0],
-                 y = (y_m - h->y0_m) / h->cell_m + before_cells * (double)n[1];
-    if (!(x >= 0 && y >= 0 && x < h->tiles_x * tile_side && y < h->tiles_y * tile_side)) return 1;
+    const double x = (x_m - h->x0_m) / h->cell_m + before_cells * (double)n[0];
+    const double y = (y_m - h->y0_m) / h->cell_m + before_cells * (double)n[1];
+    const Seen   all = {.share = 1};
+    Seen         seen = {0};
+    Facet        f;
+    if (!(x >= 0 && y >= 0 && x < h->tiles_x * tile_side && y < h->tiles_y * tile_side)) return all;
     const int   i = (int)x, j = (int)y;
     const Cell *cell[4] = {cell_at(h, i, j), cell_at(h, i + 1, j), cell_at(h, i, j + 1), cell_at(h, i + 1, j + 1)};
-    if (!cell[0] && !cell[1] && !cell[2] && !cell[3]) return 1;
-    const F32x8 aside = f32x8_fma(_mm256_set1_ps(n[0]), f32x8_load(sine), _mm256_set1_ps(n[1]) * f32x8_load(cosine));
-    const F32x8 up = _mm256_set1_ps(n[2]);
-    const float open = sum8(above(f32x8_set(0), aside, up)), u = (float)(x - i), v = (float)(y - j);
-    const float weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-    float       share = 0;
-    for (int k = 0; k < 4; k++) share += weight[k] * share_of(cell[k], z_m, aside, up, open, before_cells * h->cell_m);
-    return share;
+    if (!cell[0] && !cell[1] && !cell[2] && !cell[3]) return all;
+    const F32x8 east = f32x8_load(sine), north = f32x8_load(cosine), none = f32x8_set(0);
+    f.aside = f32x8_fma(_mm256_set1_ps(n[0]), east, _mm256_set1_ps(n[1]) * north);
+    f.up = _mm256_set1_ps(n[2]);
+    f.behind = f32x8_max(none - f.aside, none);
+    const float behind = sum8(f.behind);
+    f.behind = f.behind * _mm256_set1_ps(behind > 0.1f ? 1 / behind : 0);
+    f.sunny = none;
+    if (sun_enu)
+        f.sunny =
+            f32x8_max(none - f32x8_fma(_mm256_set1_ps(sun_enu[0]), east, _mm256_set1_ps(sun_enu[1]) * north), none);
+    f.all = above(none, f.aside, f.up);
+    f.open = sum8(f.all);
+    const float u = (float)(x - i), v = (float)(y - j),
+                weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+    for (int k = 0; k < 4; k++) add_cell(&seen, cell[k], weight[k], z_m, &f, before_cells * h->cell_m);
+    return seen;
 }
 
 double sky_horizon_share(const SkyHorizons *h, const double p_enu[3], const double n_enu[3])
 {
     const float n[3] = {(float)n_enu[0], (float)n_enu[1], (float)n_enu[2]};
-    return (double)share_at(h, p_enu[0], p_enu[1], (float)p_enu[2], n);
+    return (double)seen_at(h, p_enu[0], p_enu[1], (float)p_enu[2], n, NULL).share;
 }
 
 void sky_horizon_light(SkyHorizonLight *out, const SkyHorizons *h, const Air *air,
                        const double level_w_m2[AIR_BAND_COUNT])
 {
     const Daylight *light = &air->light;
-    const double    up = light->sun_d_enu[2], beam = up > 0 ? sqrt(fmax(1 - up * up, 0)) / pi_rad : 0;
-    *out = (SkyHorizonLight){{0}, {0}, {0}};
+    const double    up = fmax(light->sun_d_enu[2], 0);
+    *out = (SkyHorizonLight){.sky = {0}};
+    for (int c = 0; c < 3 && up > 0; c++) out->sun_enu[c] = (float)light->sun_d_enu[c];
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        out->sky[b] = (float)light->sky_w_m2[b], out->level[b] = (float)level_w_m2[b];
-        out->wall[b] =
-            b >= AIR_MWIR
-                ? (float)level_w_m2[b] /* about as warm as the ground */
-                : (float)(h->wall_rho[b] * (light->sun_w_m2[b] * beam + 0.5 * (light->sky_w_m2[b] + level_w_m2[b])));
+        const double sky = light->sky_w_m2[b], sun = b >= AIR_MWIR ? 0 : light->sun_w_m2[b];
+        out->sky[b] = (float)sky, out->level[b] = (float)level_w_m2[b];
+        /* in the thermal bands about as warm as the ground */
+        out->wall[b] = (float)(b >= AIR_MWIR ? level_w_m2[b] : 0.5 * h->wall_rho[b] * (sky + level_w_m2[b]));
+        out->sunlit_wall[b] = (float)(b >= AIR_MWIR ? 0 : h->wall_rho[b] * sun);
+        out->level_sun[b] = (float)(sun * up > 0 ? sun * up / (sun * up + sky) : 0);
     }
+}
+
+/* Of the ground that a wall sees, the share in the shadow of its own building: a strip without ends before it. */
+static float own_shade(const SkyHorizonLight *light, const Seen *seen, const float n[3], float above_m)
+{
+    const float away = -(n[0] * light->sun_enu[0] + n[1] * light->sun_enu[1]);
+    if (!(away > 0 && light->sun_enu[2] > 0.02f && seen->own_high_m > 0)) return 0;
+    const float deep_m = seen->own_high_m * away / light->sun_enu[2], z_m = above_m > 0.1f ? above_m : 0.1f;
+    return 1 - z_m / sqrtf(z_m * z_m + deep_m * deep_m);
 }
 
 void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, const SkyHorizonLight *light,
                       unsigned air_bands, const Hits *hits)
 {
     const F32x8 sky = f32x8_load(light->sky), level = f32x8_load(light->level), wall = f32x8_load(light->wall);
+    const F32x8 sunlit = f32x8_load(light->sunlit_wall), level_sun = f32x8_load(light->level_sun);
     for (int i = 0; i < hits->count; i++) {
         if (hits->kind[i] != hit_ground && hits->kind[i] != hit_scenery) continue;
         const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
-        const float share = share_at(h, hits->p_enu[0][i], hits->p_enu[1][i], (float)hits->p_enu[2][i], n);
-        float       of[8];
-        if (share == 1) continue;
+        const float z_m = (float)hits->p_enu[2][i];
+        const Seen  seen = seen_at(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m, n, light->sun_enu);
+        float       of[8], shade = 0;
+        if (hits->kind[i] == hit_scenery && seen.own_high_m > 0)
+            shade = own_shade(light, &seen, n, z_m - ground_under(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m));
+        if (seen.share == 1 && shade == 0) continue;
         const F32x8 up = _mm256_set1_ps(0.5f * (1 + n[2])), down = _mm256_set1_ps(0.5f * (1 - n[2])) * level;
         const F32x8 open = f32x8_max(sky * up + down, f32x8_set(1e-20));
-        f32x8_store(of, (up * (_mm256_set1_ps(share) * sky + _mm256_set1_ps(1 - share) * wall) + down) / open);
+        const F32x8 walls = _mm256_set1_ps(1 - seen.share) * wall + _mm256_set1_ps(seen.lit) * sunlit;
+        const F32x8 below = down * (f32x8_set(1) - _mm256_set1_ps(shade) * level_sun);
+        f32x8_store(of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + below) / open);
         for (int b = 0; b < AIR_BAND_COUNT; b++)
             if (air_bands >> b & 1) factor[b][i] *= of[b];
     }

@@ -2,6 +2,7 @@
  * they lead to. */
 #include "sensor/commands/commands.h"
 
+#include "entities/scenery/scenery_clutter.h"
 #include "entities/traces/effect_history.h"
 #include "render/heat/given_heat.h"
 #include "render/scattering/signatures/given_signature.h"
@@ -155,6 +156,14 @@ static bool culture_is_valid(const Check *c)
                   "`pitviper terrain culture FILE` lists what it holds");
 }
 
+static bool clutter_is_valid(const Check *c)
+{
+    char path[1024];
+    return (clutter_table_path(path, sizeof path, c->config->terrain.clutter_table) &&
+            scenery_clutter_check(path) == STATUS_OK) ||
+           report(c, "terrain.clutter_table", "countryside, rear_area, or a CSV as etc/clutter.csv");
+}
+
 static bool atmosphere_is_valid(const Check *c)
 {
     Atmosphere   *atmosphere = NULL;
@@ -266,6 +275,7 @@ static bool tables_are_valid(Check *c)
     good &= given_signatures_are_valid(c);
     good &= terrain_is_valid(c);
     good &= culture_is_valid(c);
+    good &= clutter_is_valid(c);
     if (!known.bundled)
         known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "radars.csv", radar_preset_check) &&
                         is_bundled(c, "heat.csv", read_heat) && is_bundled(c, "heat_machines.csv", read_machines) &&

@@ -16,6 +16,7 @@ static Status add_clutter(FrameScenery *s, const Landscape *landscape)
     if (!(plan->clutter > 0)) return STATUS_OK;
     clutter.density = plan->clutter;
     clutter.seed = plan->clutter_seed;
+    clutter.table = *plan->clutter_table ? plan->clutter_table : NULL;
     memcpy(clutter.south_west_m, plan->south_west_m, sizeof clutter.south_west_m);
     memcpy(clutter.north_east_m, plan->north_east_m, sizeof clutter.north_east_m);
     clutter.landscape = landscape;

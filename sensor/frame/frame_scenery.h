@@ -19,7 +19,8 @@ typedef enum CultureFrom {
 typedef struct SceneryPlan {
     CultureFrom   from;
     CultureConfig invented;
-    double        clutter; /* times the density of etc/clutter.csv; 0: none */
+    double        clutter;             /* times the density of its table; 0: none */
+    char          clutter_table[1024]; /* name or path (clutter_table_path); empty: countryside */
     uint64_t      clutter_seed;
     double        south_west_m[2], north_east_m[2]; /* ENU: where clutter stands */
 } SceneryPlan;

@@ -330,7 +330,10 @@ enum { config_paths_size = 4096 };
     ROW(PATH, terrain., trees, "", 1024, \
         "table of trees (CSV): lat and lon, or x_m and y_m; kind, height_m, marked; empty: none") \
     ROW(DOUBLE, terrain., clutter, 0, 0, 20, "", \
-        "civil vehicles, machines, animals, fires and rocks, by the densities of etc/clutter.csv times this; 0: none") \
+        "civil vehicles, machines, animals, fires and rocks, by the densities of clutter_table times this; 0: none") \
+    ROW(NAME_OR_PATH, terrain., clutter_table, "countryside", 1024, \
+        "what clutter there is: countryside, rear_area (vehicles, generators, kitchens, fires about troops) or a CSV as " \
+        "etc/clutter.csv") \
     ROW(SWITCH, terrain., woods, true, "on|off", \
         "trees, bushes, hedges and low plants, by canopy layers, marked trunks or surface classes; off: bare " \
         "ground") \

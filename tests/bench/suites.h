@@ -60,6 +60,7 @@ Status bench_stability_pictures(Bench *bench); /* ranges, origins, views, sizes 
 Status bench_stability_crowd(Bench *bench);    /* numbers of entities, positions of the eye, the radar */
 Status bench_stability_plants(Bench *bench);   /* rays against plants */
 Status bench_stability_plant_tables(Bench *bench);
+Status bench_stability_scenery(Bench *bench); /* buildings and clutter */
 Status bench_stability_heat(Bench *bench);    /* the ground's heat */
 Status bench_stability_network(Bench *bench); /* stability_heat.c: networks of thermal nodes */
 Status bench_stability_radar(Bench *bench);   /* the field of a radar target */

@@ -111,7 +111,8 @@ stability/render)
         "picture: a block" "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "plants: leaves edge-on" \
         "plants: skimmed tops" "plants: trees at the origin and 200 km" "plants: a million trees" "heat: 1 K to 2000 K" \
         "heat: the same: energy" "heat: polar day and night" "heat: 1950 and 2090" "heat: seven threads" \
-        "heat: back and forth in time" "network: 1 K to 2000 K" "network: the same: temperatures" ;;
+        "heat: back and forth in time" "network: 1 K to 2000 K" "network: the same: temperatures" "scenery: eyes in a street" \
+        "scenery: at the poles" "scenery: 1 .. 200 km" "scenery: an eye at 1 um" "scenery: eyes within" "scenery: temperatures" ;;
 stability/sensor)
     rows "detector: " "display: " "threads: " "twilight: displays, sun" "twilight: displays, largest" "twilight: displays grow" ;;
 woods)

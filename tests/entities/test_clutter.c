@@ -295,16 +295,14 @@ static bool is_material(const Table *t, const char *name)
     return false;
 }
 
-/* Every class has a row, every part of every thing a material, and hot things are as many as the sources say: animals a
- * hundred a km2 of pasture, engines and fires some. */
-static void the_table_that_is_shipped(void **state)
+/* Every part of every thing of a table has a material, and every class that is wanted a row. */
+static void table_is_whole(const char *name, const bool want[CLUTTER_CLASSES])
 {
-    (void)state;
     static ClutterTable table;
     Table               materials;
     char                path[4096];
     bool                has[CLUTTER_CLASSES] = {false};
-    CHECK(etc_path(path, sizeof path, "clutter.csv"));
+    CHECK(clutter_table_path(path, sizeof path, name));
     assert_int_equal(clutter_table_read(&table, path), STATUS_OK);
     CHECK(etc_path(path, sizeof path, "materials.csv"));
     assert_int_equal(table_open(&materials, path), STATUS_OK);
@@ -330,16 +328,65 @@ static void the_table_that_is_shipped(void **state)
         }
     }
     table_close(&materials);
-    for (int class = 1; class < CLUTTER_CLASSES; class ++) CHECK(has[class]);
+    for (int class = 1; class < CLUTTER_CLASSES; class ++) CHECK(has[class] || !want[class]);
+}
+
+static void the_tables_that_are_shipped(void **state)
+{
+    static const bool rear[CLUTTER_CLASSES] = {
+        [CLUTTER_CAR] = true,     [CLUTTER_VAN] = true,     [CLUTTER_LORRY] = true, [CLUTTER_GENERATOR] = true,
+        [CLUTTER_MACHINE] = true, [CLUTTER_TRAILER] = true, [CLUTTER_FIRE] = true,  [CLUTTER_HEAP] = true,
+        [CLUTTER_WRECK] = true,   [CLUTTER_CRATES] = true,  [CLUTTER_TENT] = true};
+    bool all[CLUTTER_CLASSES];
+    (void)state;
+    for (int class = 0; class < CLUTTER_CLASSES; class ++) all[class] = true;
+    table_is_whole("countryside", all);
+    table_is_whole("rear_area", rear);
+}
+
+/* Names are those of tables of etc, what has a dot or stroke is a path, and no other word is either. */
+static void tables_by_name(void **state)
+{
+    char path[4096], etc[4096];
+    (void)state;
+    CHECK(clutter_table_path(path, sizeof path, "countryside") && etc_path(etc, sizeof etc, "clutter.csv"));
+    assert_string_equal(path, etc);
+    CHECK(clutter_table_path(path, sizeof path, "rear_area") && etc_path(etc, sizeof etc, "clutter_rear_area.csv"));
+    assert_string_equal(path, etc);
+    CHECK(clutter_table_path(path, sizeof path, "./mine.csv"));
+    assert_string_equal(path, "./mine.csv");
+    log_suppress(true);
+    CHECK(!clutter_table_path(path, sizeof path, "seaside") && !clutter_table_path(path, 4, "./mine.csv"));
+    log_suppress(false);
+}
+
+/* The rear area has many times as many things that may be hot as the countryside, on the same ground. */
+static void rear_area_is_warm(void **state)
+{
+    int hot[2] = {0};
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        ClutterConfig c = about(&plain, 2000);
+        c.table = k ? "rear_area" : "countryside";
+        Scenery s = add(&c);
+        for (int n = 0; n < s.objects; n++) {
+            const SceneryState *of = &s.state[s.object[n].state];
+            hot[k] += (of->drives.engine > 0 && !(of->stood_s > 0)) || of->drives.burning > 0;
+        }
+        scenery_free(&s);
+    }
+    print_message("engines that run and fires on 16 km2: countryside %d, rear area %d\n", hot[0], hot[1]);
+    CHECK(hot[0] > 0 && hot[1] > 4 * hot[0]);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(as_dense_as_the_table),     cmocka_unit_test(as_many_by_ways_and_plots),
-        cmocka_unit_test(states_are_shared_out),     cmocka_unit_test(stands_on_the_ground),
-        cmocka_unit_test(squares_fit_together),      cmocka_unit_test(limits_hold),
-        cmocka_unit_test(the_table_that_is_shipped),
+        cmocka_unit_test(as_dense_as_the_table),       cmocka_unit_test(as_many_by_ways_and_plots),
+        cmocka_unit_test(states_are_shared_out),       cmocka_unit_test(stands_on_the_ground),
+        cmocka_unit_test(squares_fit_together),        cmocka_unit_test(limits_hold),
+        cmocka_unit_test(the_tables_that_are_shipped), cmocka_unit_test(tables_by_name),
+        cmocka_unit_test(rear_area_is_warm),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -34,6 +34,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
                                        "materials.csv",
                                        "surfaces.csv",
                                        "clutter.csv",
+                                       "clutter_rear_area.csv",
                                        "sensors.csv",
                                        "sensors/example_flir2.sheet",
                                        "radars.csv",

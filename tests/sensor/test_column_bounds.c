@@ -197,6 +197,7 @@ static const struct Reader {
     {"radars.csv", read_radar, NULL},
     {"woods.csv", read_woods, NULL},
     {"clutter.csv", scenery_clutter_check, NULL},
+    {"clutter_rear_area.csv", scenery_clutter_check, NULL},
     {"cover_nlcd.csv", surface_table_check, NULL},
     {"catalog.csv", read_catalog, NULL},
     {"radar/clutter.csv", read_clutter, NULL},

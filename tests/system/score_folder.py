@@ -20,7 +20,8 @@ def truth_line(frame, targets, km2=0.5):
             "sun": {"azimuth_deg": 90.0, "elevation_deg": 30.0},
             "sensors": [{"name": "seeker", "bands": BANDS, "width_px": SIZE[0], "height_px": SIZE[1], "hfov_deg": 4.0, "vfov_deg": 3.0,
                          "ecef_from_cam": camera(), "ground_km2": km2}],
-            "targets": targets}
+            "targets": targets, "clutter": [{"class": "car", "id": "1", "instance": 1, "pixels": 400.0, "box_px": [95, 295, 115, 315],
+                                             "range_m": 1500.0, "temp_k": 300.0}]}
 
 def target(number, kind, box, pixels, **more):
     t = {"entity": f"1:1:{number}", "class": kind, "range_m": 1500.0, "aspect_deg": 90.0, "pixels": pixels, "visible_fraction": 1.0,
@@ -70,7 +71,7 @@ class Maker:
                     for n in range(r.choice([0, 0, 1, 2])):
                         said = r.choice(["tank", "unknown"])
                         answers.append(line | {"class": said, "box_px": [100 + 200 * n, 300, 110 + 200 * n, 310]})
-                        self.count("false_alarms"), self.count(f"false as {said}")
+                        self.count("false_alarms"), self.count(f"false as {said}"), self.count("on car", n == 0)
                     if r.random() < 0.5: answers.append({k: v for k, v in line.items() if k not in ("score",)} | {"answer": 0, "of": 0})
                 out.write(json.dumps(truth_line(frame, targets), separators=(",", ":")) + "\n")
         return answers

@@ -19,6 +19,7 @@ def counts(score, expected):
         for key in ("chances", "found"): same(f"{key} {band}", r["by_band"][band][key], e[f"{key} {band}"])
     same("answers", r["answers"], e["answers"])
     same("ignored", r["ignored"], e["ignored"])
+    same("on clutter", r["on_clutter"]["car"], e["on car"])
     for row in ("tank", "truck", "false"):
         for column in ("tank", "truck", "unknown") + (("missed",) if row != "false" else ()):
             same(f"{row} as {column}", r["confusion"].get(row, {}).get(column, 0), e.get(f"{row} as {column}", 0))

@@ -91,6 +91,10 @@ exercise "$tmp/two.yaml" "$tmp/two.pcap"
 run replay "$tmp/two.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 --bands optical --host observer \
     --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
+regress_case village # with buildings and clutter
+run replay "$tmp/village.pcap" "${case_options[@]}" --out "$tmp/village" --size 96x68 --threads 1 --only 0 --bands lwir --no-png --coco \
+    --set publish.coco_clutter=true --set observer.height_m=150
+check "products with scenery" [ $code = 0 ] || cat "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
 run replay "$tmp/two.yaml" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml" \
     --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000
@@ -119,7 +123,7 @@ kill "${senders[@]}" 2>/dev/null
 wait "${senders[@]}" 2>/dev/null
 
 variant=$(find "$tmp/sweep" -name variant.json -printf '%h\n')
-python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$variant" --run "$tmp/truth" \
+python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$tmp/village" --run "$variant" --run "$tmp/truth" \
     --run "$tmp/sensor" --sweep "$tmp/sweep" --score "$tmp/score" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
     --capture "$tmp/truth.pcapng" --live "$tmp/truth" --capture "$tmp/sensor.pcapng" --streams "${#stream[@]}" || fail "products and their reference"
 

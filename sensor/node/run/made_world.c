@@ -187,6 +187,16 @@ static void add_own(Key *key, const Config *config)
     }
 }
 
+/* The table of clutter, by content. */
+static void add_clutter(Key *key, const Config *config)
+{
+    char path[1024], sha256[sha256_text_size];
+    if (!(config->terrain.clutter > 0)) return;
+    key->good = key->good && clutter_table_path(path, sizeof path, config->terrain.clutter_table) &&
+                sha256_file(sha256, path) == STATUS_OK;
+    if (key->good) add_text(key, sha256);
+}
+
 /* ---- log, survey, catalog --------------------------------------------------------------------------- */
 
 static void hash_octets(void *user, const void *octets, size_t count) { add(user, octets, count); }
@@ -348,6 +358,7 @@ static Status need_culture(MadeWorld *m, const MadeOf *of)
     Config *part = &m->part[MADE_CULTURE];
     Key     key = key_of(part, MADE_CULTURE, of->config);
     add_square(&key, of->square);
+    add_clutter(&key, part);
     key.good = key.good && *m->key[MADE_GROUND];
     if (is_there(key_text, m, MADE_CULTURE, &key)) return STATUS_OK;
     const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, NULL, m->cache, NULL};

@@ -12,7 +12,7 @@ static const void *next_class(FieldAt *at, int i)
 }
 
 static const Field class_rows[] = {
-    {"CLASS", "", "", "", "things", .item = next_class, .kind = FIELD_OF_INT},
+    {"CLUTTER", "", "", "", "things", .item = next_class, .kind = FIELD_OF_INT},
 };
 
 static const Field scenery_rows[] = {

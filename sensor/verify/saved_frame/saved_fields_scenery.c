@@ -73,11 +73,30 @@ static void tree_fields(Fields *f, void *record)
     field_bool(f, "mark of a tree", &t->marked);
 }
 
-void saved_fields_scenery(Fields *f, SavedFrame *file)
+static void record_lists(Fields *f, Culture *c)
 {
     enum { most = culture_most_records };
+    field_list(f, &c->corners, (void **)&c->corner_m, sizeof *c->corner_m, culture_most_corners, corner_fields);
+    field_list(f, &c->buildings, (void **)&c->building, sizeof *c->building, most, building_fields);
+    field_list(f, &c->lines, (void **)&c->line, sizeof *c->line, most, line_fields);
+    field_list(f, &c->points, (void **)&c->point, sizeof *c->point, most, point_fields);
+    field_list(f, &c->trees, (void **)&c->tree, sizeof *c->tree, most, tree_fields);
+    if (!f->from || !fields_good(f)) return;
+    const char *fault = culture_fault(c);
+    if (fault) f->fault = fault;
+}
+
+/* Last, and only of a table that is not countryside. */
+static void table_field(Fields *f, char *named, size_t size)
+{
+    const bool other = f->from ? f->from->at < f->from->end : *named && strcmp(named, "countryside") != 0;
+    if (other) field_chars(f, "table of clutter", named, size);
+    else if (f->from) *named = 0;
+}
+
+void saved_fields_scenery(Fields *f, SavedFrame *file)
+{
     SceneryPlan *plan = &file->scenery.plan;
-    Culture     *c = &file->scenery.culture;
     int          from = (int)plan->from;
     file->built = true;
     field_int(f, "culture", &from, CULTURE_FROM_NOTHING, CULTURE_FROMS - 1);
@@ -91,13 +110,6 @@ void saved_fields_scenery(Fields *f, SavedFrame *file)
     field_reals(f, "place of clutter", plan->north_east_m, 2, 2e6);
     field_int(f, "objects of scenery", &file->scenery.objects, 0, INT32_MAX - 1);
     field_chars(f, "scenery sha256", file->scenery.sha256, sizeof file->scenery.sha256);
-    if (plan->from != CULTURE_FROM_RECORDS) return;
-    field_list(f, &c->corners, (void **)&c->corner_m, sizeof *c->corner_m, culture_most_corners, corner_fields);
-    field_list(f, &c->buildings, (void **)&c->building, sizeof *c->building, most, building_fields);
-    field_list(f, &c->lines, (void **)&c->line, sizeof *c->line, most, line_fields);
-    field_list(f, &c->points, (void **)&c->point, sizeof *c->point, most, point_fields);
-    field_list(f, &c->trees, (void **)&c->tree, sizeof *c->tree, most, tree_fields);
-    if (!f->from || !fields_good(f)) return;
-    const char *fault = culture_fault(c);
-    if (fault) f->fault = fault;
+    if (plan->from == CULTURE_FROM_RECORDS) record_lists(f, &file->scenery.culture);
+    table_field(f, plan->clutter_table, sizeof plan->clutter_table);
 }
