@@ -1,7 +1,8 @@
 /* terrain/import/terrain_import.h: a terrain store from any set of files that GDAL reads.
  *
  * Level 0 is made in strips of rows: memory grows with a strip (some 200 MB for 12 000 posts a row, twice that where a
- * surface model is taken apart, and two thirds more with its buildings as records), never with the whole. The same store for any number of threads. */
+ * surface model is taken apart, and two thirds more with its buildings as records), never with the whole. The same
+ * store for any number of threads. */
 #ifndef TERRAIN_IMPORT_TERRAIN_IMPORT_H
 #define TERRAIN_IMPORT_TERRAIN_IMPORT_H
 
