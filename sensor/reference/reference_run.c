@@ -34,7 +34,7 @@ static const ReferenceWord words[] = {
     {"FAULT", "one of", answer_fault, NULL},
     {"SKIP", "one of", skip, what_skip},
     {"KIND", "one of", kind, NULL},
-    {"CLASS", "one of", clutter, NULL},
+    {"CLUTTER", "one of", clutter, NULL},
     {"STAGE", "one of", stage, NULL},
     {"LATENCY", "one of", latency, NULL},
     REFERENCE_WORD_CONSUMER,
