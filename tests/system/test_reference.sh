@@ -93,7 +93,7 @@ run replay "$tmp/two.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
 regress_case village # with buildings and clutter
 "$pitviper" replay "$tmp/village.pcap" "${case_options[@]}" --out "$tmp/village" --threads 1 --only 0 --bands lwir --no-png \
-    --coco --set publish.coco_clutter=true --set observer.height_m=150 >"$tmp/stdout" 2>"$tmp/stderr"
+    --coco --set publish.coco_clutter=true >"$tmp/stdout" 2>"$tmp/stderr"
 check "products with scenery" [ $? = 0 ] || cat "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
 run replay "$tmp/two.yaml" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml" \
