@@ -20,11 +20,11 @@ pipe='FIFO \(named pipe\)'
 
 # settings, each key that names a file; the first is not set up further than that
 for key in sensor.table radar.table radar.given radar.library weather.atmosphere weather.day heat.given heat.vehicles heat.marks \
-    terrain.store terrain.elevation terrain.geoid terrain.cover terrain.cover_table terrain.orthophoto models.catalog \
+    terrain.store terrain.elevation terrain.geoid terrain.cover terrain.cover_table terrain.clutter_table terrain.orthophoto models.catalog \
     models.materials quality.table; do
     refuses 2 "$pipe" replay demo.pcap --out out --set $key=./f.csv
 done
-check "no key that names a file is left out" [ "$("$pitviper" check --default | grep -ciE '^ *#? *(table|given|library|atmosphere|day|vehicles|marks|store|elevation|geoid|cover|cover_table|orthophoto|catalog|materials):')" -ge 17 ]
+check "no key that names a file is left out" [ "$("$pitviper" check --default | grep -ciE '^ *#? *(table|given|library|atmosphere|day|vehicles|marks|store|elevation|geoid|cover|cover_table|clutter_table|orthophoto|catalog|materials):')" -ge 18 ]
 refuses 2 'character device' replay demo.pcap --out out --set heat.given=/dev/zero
 refuses 2 "$pipe" replay demo.pcap --out out -c f.yaml
 refuses 1 "$pipe" replay demo.pcap --out out --sweep f.yaml
