@@ -48,6 +48,6 @@ Status parametric_structure(Model *out, const char *name, double sag_m);
 Status parametric_civil(Model *out, const char *name, double sag_m);
 Status parametric_countryside(Model *out, const char *name, double sag_m);
 Status parametric_rock(Model *out, const char *name, double sag_m);
-Status parametric_cover(Model *out, const char *name, double sag_m);     /* cover.c */
+Status parametric_cover(Model *out, const char *name, double sag_m); /* cover.c */
 
 #endif

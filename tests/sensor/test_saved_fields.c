@@ -223,7 +223,8 @@ static Status parsed(SavedFrame *out, uint32_t says, int version, Arena *arena)
 }
 
 /* What etc/FRAME_FILE.md says a version lacks takes no octets in it, and is read as it was before: nothing, no step of
- * sampling, straight lines of sight, the time of plants or none. A u32, or a bool, has 4 octets, a float 4, a double 8, a list 4 and its records.
+ * sampling, straight lines of sight, the time of plants or none. A u32, or a bool, has 4 octets, a float 4, a double 8,
+ * a list 4 and its records.
  */
 static void older_versions_are_read(void **state)
 {

@@ -143,8 +143,7 @@ static bool add_standing(Paths *p, const Track *track, const bool *fixed, const 
     survey_point_rotation(r_ecef_from_body, &track->point[0]);
     for (int k = 0; k < 3; k++) nose_ecef[k] = r_ecef_from_body[3 * k];
     m3_tmul_v3(nose_enu, p->landscape->frame.r_ecef_from_enu, nose_ecef);
-    const WoodsPath path =
-        woods_footprint(first, nose_enu, model->box_high[0], model->box_low[0], model->width_m);
+    const WoodsPath path = woods_footprint(first, nose_enu, model->box_high[0], model->box_low[0], model->width_m);
     add_path(p, path.a_m, path.b_m, path.half_m);
     return true;
 }
