@@ -237,10 +237,45 @@ static void what_no_scenery_has_is_refused(void **state)
     arena_destroy(arena);
 }
 
+/* Of clutter by another table than countryside its name is kept, and the scenery follows from it; octets without an end
+ * are no name. */
+static void the_table_of_clutter(void **state)
+{
+    (void)state;
+    Arena     *arena = arena_create();
+    Landscape  landscape = ground_of(3);
+    SavedFrame file = frame_of(NULL, CULTURE_FROM_NOTHING, 1), got;
+    ByteSink   plain = written(file);
+    snprintf(file.scenery.plan.clutter_table, sizeof file.scenery.plan.clutter_table, "countryside");
+    ByteSink same = written(file);
+    CHECK(plain.count == same.count && memcmp(plain.bytes, same.bytes, plain.count) == 0);
+    snprintf(file.scenery.plan.clutter_table, sizeof file.scenery.plan.clutter_table, "rear_area");
+    FrameScenery made = {0}, again;
+    assert_int_equal(frame_scenery_make(&made, &file.scenery.plan, &landscape), STATUS_OK);
+    assert_int_equal(saved_scenery_sha256(file.scenery.sha256, &made.scenery), STATUS_OK);
+    file.scenery.objects = made.scenery.objects;
+    ByteSink other = written(file);
+    assert_null(read_back(&got, &other, arena));
+    assert_string_equal(got.scenery.plan.clutter_table, "rear_area");
+    assert_int_equal(saved_scenery_make(&again, &landscape, &got, false), STATUS_OK);
+    frame_scenery_free(&again);
+    *got.scenery.plan.clutter_table = 0; /* the countryside is not what was saved */
+    log_suppress(true);
+    assert_int_equal(saved_scenery_make(&again, &landscape, &got, false), STATUS_BAD_VALUE);
+    log_suppress(false);
+    frame_scenery_free(&again), frame_scenery_free(&made);
+    memset(other.bytes + other.count - sizeof file.scenery.plan.clutter_table, 'a',
+           sizeof file.scenery.plan.clutter_table);
+    assert_string_equal(read_back(&got, &other, arena), "table of clutter");
+    sink_free(&plain), sink_free(&same), sink_free(&other);
+    landscape_destroy(&landscape);
+    arena_destroy(arena);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(records_and_what_follows_from_them),
-                                       cmocka_unit_test(what_is_invented_takes_no_records),
-                                       cmocka_unit_test(what_no_scenery_has_is_refused)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_table_of_clutter), cmocka_unit_test(records_and_what_follows_from_them),
+        cmocka_unit_test(what_is_invented_takes_no_records), cmocka_unit_test(what_no_scenery_has_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
