@@ -345,7 +345,7 @@ static void octets_that_are_no_ground(void **state)
     const double nan_k = NAN;
     const size_t past = sizeof(int32_t) + 2 * sizeof(double) * heat_past + 3 * sizeof(double) * heat_past +
                         3 * sizeof(float) * ground_kinds * heat_past +
-                        sizeof(float) * ground_kinds; /* the last of it */
+                        2 * sizeof(float) * ground_kinds; /* the last of it */
     CHECK(octets && count > past && kept_read(heat_kept_values, h, octets, count));
     CHECK(!kept_read(heat_kept_values, h, octets, count - 1) && !kept_read(heat_kept_values, h, octets, 0));
     for (int32_t wrong = -1; wrong <= heat_past + 1; wrong += heat_past + 2) {

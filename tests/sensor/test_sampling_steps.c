@@ -109,7 +109,9 @@ static void judge_step(Tally4 *t, const Picture *full, const Picture *clear, con
             const int    donors = donors_of(donor, p, step, x, y);
             bool         horizon = false;
             for (int n = 1; n < donors; n++) horizon |= is_sky(full, donor[n]) != is_sky(full, donor[0]);
-            const bool pattern = by_pattern(step, x, y), smoke = !equal_at(full, clear, px);
+            /* smoke before it, not its shadow on the ground, which is filled as other shadows are: in LWIR there is no
+             * sun */
+            const bool pattern = by_pattern(step, x, y), smoke = full->lwir[px] != clear->lwir[px];
             const bool entity = full->entity[px] || (full->covered && full->covered[px] > 0);
             for (int k = 0; k < picture_radar; k++) CHECK(isfinite(picture_plane(p, k)[px]));
             if (pattern || entity || smoke || horizon) {

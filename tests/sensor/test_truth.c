@@ -147,6 +147,7 @@ static void plants_hide_a_share_of_a_target(void **state)
         Target       t[2];
         scene();
         f.picture.instance = instance;
+        f.world.forest = (Forest *)instance; /* that there is one: foliage counts */
         f.pixels[1] = (TargetPixels){.projected = true,
                                      .visible = 12 - ground - entity - trees,
                                      .amodal = 12,
@@ -159,7 +160,7 @@ static void plants_hide_a_share_of_a_target(void **state)
         CHECK_NEAR(t[0].visible_fraction, in_the_way[i].by ? 1 - (ground + entity + trees) / 12 : 1, 1e-12);
         CHECK(in_the_way[i].by ? t[0].occluder && strcmp(t[0].occluder, in_the_way[i].by) == 0 : !t[0].occluder);
         CHECK(t[0].occluder_index == (in_the_way[i].by && *in_the_way[i].by == 'e' ? 0 : -1));
-        f.picture.instance = NULL; /* a world without plants says nothing of them */
+        f.picture.instance = NULL, f.world.forest = NULL; /* a world without plants says nothing of them */
         assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
         CHECK(isnan(t[0].foliage_fraction));
     }
