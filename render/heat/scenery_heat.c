@@ -11,7 +11,7 @@ SceneryHeatConfig scenery_heat_default_config(void)
     return c;
 }
 
-/* ---- who is of what ---------------------------------------------------------------------------- */
+/* ---- walls of parts, movers of objects ------------------------------------------------------------ */
 
 /* The wall of a part, a new one if it is the first of its construction and material. Beyond scenery_most_walls: the
  * last. */

@@ -34,7 +34,7 @@ typedef enum TakenKind {
 
 typedef struct Taken {
     Rectangle at;
-    int32_t   owner; /* of one owner nothing is in the way of another, where asked; -1: nobody's */
+    int32_t   owner; /* things of one owner may touch, where asked; -1: it has none */
     uint8_t   kind;  /* TakenKind */
 } Taken;
 

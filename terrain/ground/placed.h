@@ -1,6 +1,6 @@
-/* terrain/ground/placed.h: invented ground that follows from a place and a seed alone, and from no exercise: whoever
- * makes it with the same figures has the same ground to the bit, so that an exercise can be placed on it beforehand
- * (scenario key ground.planted) and a node finds its vehicles where they were placed (setting terrain.place). */
+/* terrain/ground/placed.h: invented ground that follows from a place and a seed alone, and from no exercise. The
+ * same figures make the same ground to the bit, so that an exercise can be placed on it beforehand (scenario key
+ * ground.planted) and a node finds its vehicles where they were placed (setting terrain.place). */
 #ifndef TERRAIN_GROUND_PLACED_H
 #define TERRAIN_GROUND_PLACED_H
 

@@ -1,5 +1,5 @@
-/* Ground by seed and place: the same bits whoever makes it, its height where it is told; texts of places; the footprint
- * that plants leave to what stands. */
+/* Ground by seed and place: the same figures make the same bits, its height where it is told; texts of places; the
+ * footprint that plants leave to what stands. */
 #include "terrain/ground/placed.h"
 #include "terrain/woods/woods.h"
 #include "tests/check.h"

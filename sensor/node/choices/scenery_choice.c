@@ -40,7 +40,7 @@ static SceneryPlan plan_of(const Config *config, const WoodsSquare *square)
     return plan;
 }
 
-static void report(Choices *choices, const FrameScenery *s, const Landscape *landscape)
+static void report(Choices *choices, const FrameScenery *s, const Config *config, const Landscape *landscape)
 {
     SceneryCounts n;
     frame_scenery_count(&n, s);
@@ -54,6 +54,8 @@ static void report(Choices *choices, const FrameScenery *s, const Landscape *lan
                    n.buildings, n.lines, n.points);
     else if (s->plan.from == CULTURE_FROM_SEED)
         choice_add(choices, "buildings: none are invented on terrain from files (terrain.buildings)");
+    if (s->plan.from == CULTURE_FROM_SEED && *config->terrain.trees)
+        choice_add(choices, "trees: terrain.trees is not read with terrain.buildings=invented; name files, or off");
     if (s->plan.clutter > 0)
         choice_add(choices, "clutter: %d things, %d of them driving, within %.1f km (terrain.clutter)", n.clutter,
                    n.driving, 0.5e-3 * (s->plan.north_east_m[0] - s->plan.south_west_m[0]));
@@ -70,7 +72,7 @@ Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *ba
     if (status == STATUS_OK) status = frame_scenery_make(out, &plan, landscape);
     if (status != STATUS_OK)
         log_error("scenery: %s; terrain.buildings=off and terrain.clutter=0 show none", status_name(status));
-    else report(choices, out, landscape);
+    else report(choices, out, basis->config, landscape);
     if (status == STATUS_OK && out->scenery.objects > 0)
         log_detail("scenery: %d objects of %d models in %.0f ms", out->scenery.objects, out->scenery.models,
                    1e3 * (wall_clock_s() - begun_s));

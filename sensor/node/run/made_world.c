@@ -19,7 +19,7 @@ static const char *const layer_keys[MADE_LAYERS] = {
     [MADE_SURVEY] = "",
     [MADE_CATALOG] = "models.",
     [MADE_GROUND] = "seed terrain. -terrain.woods -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter",
-    [MADE_CULTURE] = "seed terrain.buildings terrain.trees terrain.clutter models.sag_m",
+    [MADE_CULTURE] = "seed terrain.buildings terrain.trees terrain.clutter",
     [MADE_WOODS] =
         "seed terrain. -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
         "-terrain.woods_low_m -terrain.woods_far_m -terrain.woods_far_mb",
