@@ -324,12 +324,12 @@ enum { config_paths_size = 4096 };
         "entities whose positions are inconsistent with it") \
     ROW(SWITCH, terrain., detail, true, "on|off", \
         "noise of the ground within each surface class (etc/ground_detail.csv); off: classes of one value") \
-    ROW(NAME_OR_PATHS, terrain., buildings, "off", config_paths_size, \
+    ROW(NAME_OR_PATHS, terrain., buildings, "invented", config_paths_size, \
         "off, invented or files: buildings, walls, roads, power lines and poles of GeoJSON, Shapefile, GeoPackage or " \
         "FlatGeobuf files, separated by commas, or a list") \
     ROW(PATH, terrain., trees, "", 1024, \
         "table of trees (CSV): lat and lon, or x_m and y_m; kind, height_m, marked; empty: none") \
-    ROW(DOUBLE, terrain., clutter, 0, 0, 20, "", \
+    ROW(DOUBLE, terrain., clutter, 1, 0, 20, "", \
         "civil vehicles, machines, animals, fires and rocks, by the densities of clutter_table times this; 0: none") \
     ROW(NAME_OR_PATH, terrain., clutter_table, "countryside", 1024, \
         "what clutter there is: countryside, rear_area (vehicles, generators, kitchens, fires about troops) or a CSV as " \
