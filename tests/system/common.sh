@@ -68,9 +68,9 @@ has_video() {
     "$pitviper" check "$tmp/video.yaml"
 }
 
-# Most tests are of other things than plants and heat, which cost seconds a run: bare ground, warmed up in few steps,
+# Most tests are of other things than plants, buildings and heat, which cost seconds a run: bare ground, warmed up in few steps,
 # unless their options say otherwise. Tests of heat or of radiances have $full in place of $bare.
-full=(--set terrain.woods=off)
+full=(--set terrain.woods=off --set terrain.buildings=off --set terrain.clutter=0)
 bare=("${full[@]}" --set heat.facets=3 --set heat.step_s=1800 --set heat.shadow_m=64 --set heat.vehicle_step_s=600)
 # run ARGUMENTS: pitviper, with standard output, standard error and exit code in $tmp/stdout, $tmp/stderr, $code
 run() {

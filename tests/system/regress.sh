@@ -20,6 +20,8 @@ config: |
     detail: off
     spacing_m: 30
     woods: off
+    buildings: off
+    clutter: 0
   heat: {facets: 3, step_s: 1800, shadow_m: 64, vehicle_step_s: 600}
   models: {sag_m: 0.02}
   seed: 1

@@ -18,7 +18,7 @@ printf 'newmtl green\nKd 0.1 0.3 0.1\n' >"$tmp/etc/box.mtl"
 printf 'axes: +x +z\norigin: auto\njoints:\n  - {nodes: hull, axis: up, pivot: centre, class: primary_turret_1, metric: azimuth, limits_deg: [-5, 5]}\nmaterials: {"*": paint_olive}\n' \
     >"$tmp/etc/box.yaml"
 exercise demo "$tmp/demo.pcap"
-printf 'sensor: {width_px: 48, height_px: 32, rate_hz: 0.1}\nmodels: {sag_m: 0.1}\nterrain: {spacing_m: 30, woods: off}
+printf 'sensor: {width_px: 48, height_px: 32, rate_hz: 0.1}\nmodels: {sag_m: 0.1}\nterrain: {spacing_m: 30, woods: off, buildings: off, clutter: 0}
 heat: {facets: 3, step_s: 3600, shadow_m: 64, vehicle_step_s: 600}\n' >"$tmp/config.yaml"
 printf 'ox_m,oy_m,oz_m,dx,dy,dz\n-9,0,-1,1,0,0\n' >"$tmp/rays.csv"
 printf 'model,visibility_km,band,observer_m,target_m,range_km,temp_k\nus1976,23,lwir,10,10,1,290\n' >"$tmp/air.csv"

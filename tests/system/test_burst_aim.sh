@@ -63,7 +63,7 @@ burst_s=$("$pitviper" inspect "$tmp/named.pcap" | sed -nE 's/^ *([0-9.]+) s +1:3
 check "the log has its burst" [ -n "$burst_s" ]
 for name in named event place none; do
     replay "$tmp/$name.pcap" "$tmp/$name" --causal --host munition --no-files --bands lwir --size 16x16 --threads 1 --rate 10 \
-        --from "$(awk "BEGIN { print $burst_s - 0.2 }")" --to "$(awk "BEGIN { print $burst_s + 3 }")" --set terrain.woods=off \
+        --from "$(awk "BEGIN { print $burst_s - 0.2 }")" --to "$(awk "BEGIN { print $burst_s + 3 }")" "${full[@]}" \
         --set sensor.gimbal_limit_deg=180
     check "$name: replays" [ $code = 0 ]
     # deg between the boresights of the first frame 0.1 s after the burst and of the last

@@ -107,7 +107,7 @@ purpose: a record
 log: $tmp/two.pcap
 config: |
   sensor: {width_px: 32, height_px: 24, rate_hz: 1, optical: pan}
-  terrain: {woods: off}
+  terrain: {woods: off, buildings: off, clutter: 0}
 frames: [4]
 Y
 run regress --update "$tmp/case" --why reference --work "$tmp/work" --jobs 1 --threads 1
