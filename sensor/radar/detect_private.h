@@ -56,6 +56,8 @@ typedef struct Detection {
     double cos_right, cos_down; /* direction, along the antenna's axes */
     double snr;                 /* power over the noise about it, less 1 */
     double rcs_m2;              /* if one echo from where it was found */
+    double scenery;             /* share of its power that scenery made, by itself; of the caller */
+    int    source;              /* of RadarFrame.source, from 1: what is brightest of that; 0: it is not of scenery */
     bool   moving;              /* clear of the ground's range rate in its direction (detect_moves); of the caller */
 } Detection;
 
