@@ -44,6 +44,14 @@ int detect_cfar(CfarHit *out, int most, const CfarConfig *config, const double *
 
 /* ---- detections --------------------------------------------------------------------------------- */
 
+/* What of a detection is scenery's. */
+typedef struct DetectedScenery {
+    double   share;  /* of its power that scenery makes by itself */
+    int      source; /* of RadarFrame.source, from 1: the brightest of that; 0: it is not of scenery */
+    uint64_t id;     /* of that: of the building's record, or the thing's */
+    uint8_t class;   /* SceneryClass; 0: built */
+} DetectedScenery;
+
 /* The detections of a map of range and Doppler: where, how fast, in which direction, how strong.
  *
  * Peaks of the sum channel over a threshold of constant false alarms. Range, Doppler and power between
@@ -56,8 +64,7 @@ typedef struct Detection {
     double cos_right, cos_down; /* direction, along the antenna's axes */
     double snr;                 /* power over the noise about it, less 1 */
     double rcs_m2;              /* if one echo from where it was found */
-    double scenery;             /* share of its power that scenery made, by itself; of the caller */
-    int    source;              /* of RadarFrame.source, from 1: what is brightest of that; 0: it is not of scenery */
+    DetectedScenery scenery;    /* of the caller */
     bool   moving;              /* clear of the ground's range rate in its direction (detect_moves); of the caller */
 } Detection;
 

@@ -107,6 +107,7 @@ typedef struct RadarSource {
 } RadarSource;
 
 typedef struct RadarSceneryCount {
+    int objects;                   /* near the rectangle that the main lobe lights; 0: there is none */
     int pieces, by_ground, hidden; /* pieces of faces in sight; of them with an echo by the ground too; out of sight */
     int things;                    /* of clutter, of which something is in sight */
     int skipped;                   /* triangles out of beam and window */

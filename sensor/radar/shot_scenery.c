@@ -28,6 +28,7 @@ Status shot_scenery_open(RadarShot *shot)
         for (int k = 0; k < 2; k++) box[k] = box_low[k], box[2 + k] = box_high[k];
     }
     shot->scenery = s;
+    shot->frame->scenery.objects = s->count;
     return STATUS_OK;
 }
 

@@ -5,7 +5,7 @@
 enum { sources_most = 12 };
 
 static const double near_cells = 1.5;  /* of a point's response that counts */
-static const double most_power = 0.5; /* of a detection's that is of scenery */
+static const double least_share = 0.5; /* of the power of a detection that is of scenery */
 
 /* What is in the cell of a detection. */
 typedef struct Told {
@@ -90,12 +90,16 @@ Status shot_tell(RadarShot *shot, Detection *detection)
         const double complex cell = map->cell[(size_t)detection[d].row * (size_t)map->columns + (size_t)detection[d].column];
         const double         power = scatter_power(told[d].scenery);
         int                  most = -1;
-        detection[d].scenery = fmin(power / fmax(scatter_power(cell), 1e-300), 1);
-        if (!(detection[d].scenery >= most_power) || !(power > scatter_power(told[d].entities))) continue;
+        DetectedScenery     *of = &detection[d].scenery;
+        of->share = fmin(power / fmax(scatter_power(cell), 1e-300), 1);
+        if (!(of->share >= least_share) || !(power > scatter_power(told[d].entities))) continue;
         for (int k = 0; k < told[d].sources; k++)
             if (most < 0 || scatter_power(told[d].of[k]) > scatter_power(told[d].of[most])) most = k;
-        detection[d].source = most < 0 ? 0 : told[d].source[most];
-        f->scenery.detections += detection[d].source > 0;
+        if (most < 0) continue;
+        of->source = told[d].source[most];
+        of->id = f->source[of->source - 1].id;
+        of->class = f->source[of->source - 1].class;
+        f->scenery.detections++;
     }
     return STATUS_OK;
 }
