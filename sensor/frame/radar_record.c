@@ -255,8 +255,9 @@ static const Field detection_rows[] = {
     {"rcs_dbsm", "dB over 1 m2", "", "", "by the radar equation, as one point where it was found", OF_DETECTION(rcs_m2),
      .as = field_db, FIELD_WITHIN(0.1, 0)},
     {"moving", "", "", "", "clear of the ground's range rate by more than notch_mps", OF_DETECTION(moving)},
-    {"scenery", "", "", "when it is not of buildings or clutter", "what of these it is: more than half of its power, and more than entities make",
-     .in = scenery_of_detection, FIELD_OBJECT(detected_rows), .newer = true},
+    {"scenery", "", "", "when it is not of buildings or clutter",
+     "what of these it is: more than half of its power, and more than entities make", .in = scenery_of_detection,
+     FIELD_OBJECT(detected_rows), .newer = true},
 };
 
 static const Field rcs_rows[] = {
@@ -358,8 +359,8 @@ static const Field radar_rows[] = {
      FIELD_EXACT},
     {"ground_cells", "", "", "", "scatterers of the ground within main lobe and window", OF_RADAR(ground_cells),
      FIELD_WITHIN(0, 0.001)},
-    {"scenery", "", "", "without buildings and clutter about the beam, and with radar.scenery false", "their echoes (etc/reference/radar_built.md)", .in = scenery_of,
-     FIELD_OBJECT(scenery_rows), .newer = true},
+    {"scenery", "", "", "without buildings and clutter about the beam, and with radar.scenery false",
+     "their echoes (etc/reference/radar_built.md)", .in = scenery_of, FIELD_OBJECT(scenery_rows), .newer = true},
     {"plants", "", "", "", "plants within main lobe and window, which return from their crowns", OF_RADAR(crowns)},
     {"chaff", "", "", "", "clouds of chaff within beam and window", OF_RADAR(clouds)},
     {"rain_1_m", "m2/m3", "", "", "backscatter of the rain by its volume; 0: none falls", OF_RADAR(rain_1_m)},

@@ -148,15 +148,15 @@ typedef struct RadarFrame {
     int                targets;
     const RadarTruth  *target;
     ReceiverReport     receiver;
-    const RadarSector *scan;             /* NULL: the beam stares */
-    int    ground_cells, ground_hidden;  /* scatterers of the ground; how many of them relief or entities hide */
+    const RadarSector *scan;         /* NULL: the beam stares */
+    int ground_cells, ground_hidden; /* scatterers of the ground; how many of them relief or entities hide */
     RadarSceneryCount scenery;
     int               sources; /* of scenery, near beam and window */
     RadarSource      *source;
-    double rain_1_m;                     /* backscatter of rain by its volume, m2/m3 */
-    int    echoes;                       /* of entities, before any goes by way of the ground */
-    int    crowns, clouds;               /* plants, and clouds of chaff, within beam and window */
-    double spent_s, step_s[RADAR_STEPS]; /* wall clock */
+    double            rain_1_m;                     /* backscatter of rain by its volume, m2/m3 */
+    int               echoes;                       /* of entities, before any goes by way of the ground */
+    int               crowns, clouds;               /* plants, and clouds of chaff, within beam and window */
+    double            spent_s, step_s[RADAR_STEPS]; /* wall clock */
 } RadarFrame;
 
 #endif

@@ -60,7 +60,8 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
         status =
             etc_path(path, sizeof path, "radar/facades.csv") ? facade_table_open(&r->facades, path) : STATUS_BAD_VALUE;
     if (status == STATUS_OK && config->scenery)
-        status = etc_path(path, sizeof path, "radar/things.csv") ? thing_table_open(&r->things, path) : STATUS_BAD_VALUE;
+        status =
+            etc_path(path, sizeof path, "radar/things.csv") ? thing_table_open(&r->things, path) : STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
     if (!etc_path(path, sizeof path, "radar/oxygen_lines.csv") ||
         !etc_path(water, sizeof water, "radar/water_lines.csv"))

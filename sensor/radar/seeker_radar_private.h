@@ -41,7 +41,7 @@ typedef struct RadarPoint {
     double complex same, other;              /* scattered, m: received as transmitted, and in the other polarisation */
     double         share;                    /* of the amplitude that is in sight */
     double         widest, room_m;           /* counts so far off an axis (sine), and beyond the window */
-    bool           own; /* made for one position of the beam: place and path are those at its instant */
+    bool           own;    /* made for one position of the beam: place and path are those at its instant */
     int32_t        source; /* of RadarFrame.source, from 1; 0: not of scenery */
 } RadarPoint;
 
@@ -122,7 +122,7 @@ typedef struct RadarShot {
     FoliageFan              *fan;                         /* foliage by direction; NULL: none is */
     const struct ChaffCloud *chaff;                       /* [chaff_count] */
     int                      chaff_count;
-    double                   base_m; /* height of the ground at the reference, ENU */
+    double                   base_m;  /* height of the ground at the reference, ENU */
     struct ShotScenery      *scenery; /* NULL: none, or its echoes are off */
     Pool                    *pool;
     Arena                   *arena;

@@ -1,5 +1,5 @@
-/* sensor/radar/shot_scenery.c: scenery in a shot: which of it is near what the beam lights, and the echoes of walls, roofs
- * and other flat faces, directly and by way of the ground before them. */
+/* sensor/radar/shot_scenery.c: scenery in a shot: which of it is near what the beam lights, and the echoes of walls,
+ * roofs and other flat faces, directly and by way of the ground before them. */
 #include "sensor/radar/shot_scenery_private.h"
 
 /* ---- what is near --------------------------------------------------------------------------------- */
@@ -129,8 +129,8 @@ static void add_by_ground(FaceBlock *b, int i)
     memcpy(p, ground.mirror_enu, sizeof p);
     p[2] = elevation_height(elevation, p[0], p[1], NULL);
     if (!isfinite(p[2])) return;
-    const uint8_t surface = shot_bare_surface(
-        shot, (uint8_t)landscape_surface(shot->scene->world->landscape, p[0], p[1]), p[0], p[1]);
+    const uint8_t surface =
+        shot_bare_surface(shot, (uint8_t)landscape_surface(shot->scene->world->landscape, p[0], p[1]), p[0], p[1]);
     const GroundSurface of = ground_surface(&shot->radar->mirror.row[surface], b->job->look.frequency_hz);
     facade_by_ground(&s, f, &b->piece[i], &b->job->look, &ground, &of);
     if (!(4 * pi_rad * (scatter_power(s.hh) + scatter_power(s.vv)) > least_m2)) return;
@@ -143,8 +143,8 @@ static void add_by_ground(FaceBlock *b, int i)
     v3_scale(to, 1 / fmax(v3_length(to), 1e-3), to);
     RadarPoint *q = next_point(b);
     *q = (RadarPoint){.path_m = b->sight[i].range_m + by_m - 2 * shot->reference_m,
-                      .path_per_pulse_m = (d_rate - v3_dot(to, v) - 2 * shot->reference_rate_mps) /
-                                          shot->preset->wave.repeat_hz,
+                      .path_per_pulse_m =
+                          (d_rate - v3_dot(to, v) - 2 * shot->reference_rate_mps) / shot->preset->wave.repeat_hz,
                       .same = shot->preset->transmits_h ? s.hh : s.vv,
                       .other = shot->preset->transmits_h ? s.vh : s.hv,
                       .share = 1,
@@ -167,15 +167,14 @@ static void add_direct(FaceBlock *b, int i)
     scatter_turn(&s, h, v, shot->right);
     if (!isfinite(scatter_power(s.hh) + scatter_power(s.vv) + scatter_power(s.hv))) return;
     RadarPoint *q = next_point(b);
-    *q = (RadarPoint){
-        .path_m = 2 * (b->sight[i].range_m - shot->reference_m),
-        .path_per_pulse_m = 2 * (shot_range_rate(shot, &b->sight[i], still) - shot->reference_rate_mps) /
-                            shot->preset->wave.repeat_hz,
-        .same = shot->preset->transmits_h ? s.hh : s.vv,
-        .other = shot->preset->transmits_h ? s.vh : s.hv,
-        .share = 1,
-        .widest = shot->scenery->widest,
-        .source = b->source_of[i] + 1};
+    *q = (RadarPoint){.path_m = 2 * (b->sight[i].range_m - shot->reference_m),
+                      .path_per_pulse_m = 2 * (shot_range_rate(shot, &b->sight[i], still) - shot->reference_rate_mps) /
+                                          shot->preset->wave.repeat_hz,
+                      .same = shot->preset->transmits_h ? s.hh : s.vv,
+                      .other = shot->preset->transmits_h ? s.vh : s.hv,
+                      .share = 1,
+                      .widest = shot->scenery->widest,
+                      .source = b->source_of[i] + 1};
     memcpy(q->p_enu, b->p_enu[i], sizeof q->p_enu);
     b->task->kept++;
 }
@@ -237,13 +236,14 @@ static bool sides_of(double side_m[2], bool *mirrored, bool *grounded, const Fac
     to_image[2] = -to_image[2];
     facade_off_mirror(aside, &f->plane, to, to_image);
     *mirrored = fabs(off[0]) < mirrors_within && fabs(off[1]) < mirrors_within;
-    *grounded = fabs(f->plane.n[2]) < upright && fabs(aside[0]) < mirrors_within && job->shot->scene->world->landscape &&
-                job->shot->radar->ground_bounce;
+    *grounded = fabs(f->plane.n[2]) < upright && fabs(aside[0]) < mirrors_within &&
+                job->shot->scene->world->landscape && job->shot->radar->ground_bounce;
     for (int k = 0; k < 2; k++) {
         side_m[k] = fmin(2, fmax(0.5 * job->cell_m / fmax(fabs(off[k]), 1e-3), job->beam_m * range_m));
         if (*mirrored) side_m[k] = fmin(side_m[k], fmin(near_m, 0.25 * job->cell_m / fmax(fabs(off[k]), 1e-3)));
         if (*grounded) side_m[k] = fmin(side_m[k], fmin(near_m, 0.25 * job->cell_m / fmax(fabs(aside[k]), 1e-3)));
-        if ((*mirrored || *grounded) && f->row->uneven_m > 0) side_m[k] = fmin(side_m[k], 0.5 * f->row->uneven_length_m);
+        if ((*mirrored || *grounded) && f->row->uneven_m > 0)
+            side_m[k] = fmin(side_m[k], 0.5 * f->row->uneven_length_m);
         side_m[k] = level_m(side_m[k], job->coarser);
     }
     return true;
@@ -353,14 +353,14 @@ static Status know_parts(FaceTask *task, RadarShot *shot, int object)
     model_pose(node, m, NULL);
     for (int p = 0; p < m->part_count; p++) {
         const ModelPart *of = &m->part[p];
-        const char      *material = o->damage && *of->damage_material[o->damage] ? of->damage_material[o->damage] : of->material;
-        const int        known = radar_materials_find(&r->materials, material);
+        const char      *material =
+            o->damage && *of->damage_material[o->damage] ? of->damage_material[o->damage] : of->material;
+        const int known = radar_materials_find(&r->materials, material);
         if (o->damage && of->damage_hidden >> o->damage & 1) continue;
         const uint64_t record = records >= 0 ? scenery->part_of[records + p] : 0;
         const Status   status = shot_source(&part[p].source, shot, object, record ? record : o->id);
         if (status != STATUS_OK) return status;
-        radar_surface(&part[p].surface, &r->materials.material[known >= 0 ? known : 0],
-                      shot->preset->wave.centre_hz);
+        radar_surface(&part[p].surface, &r->materials.material[known >= 0 ? known : 0], shot->preset->wave.centre_hz);
         part[p].row = facade_row(&r->facades, material);
     }
     *task = (FaceTask){.posed = scenery_frame_posed(shot->scenery->frame, object),
@@ -389,7 +389,8 @@ static Status list_tasks(FaceTask **out, int *count, RadarShot *shot)
         if (status != STATUS_OK) return status;
         for (int t = 0; t < task.model->triangle_count; t += task_triangles) {
             task.first = t;
-            task.end = t + task_triangles < task.model->triangle_count ? t + task_triangles : task.model->triangle_count;
+            task.end =
+                t + task_triangles < task.model->triangle_count ? t + task_triangles : task.model->triangle_count;
             (*out)[(*count)++] = task;
         }
     }
@@ -407,14 +408,13 @@ Status shot_faces(RadarShot *shot)
 {
     SeekerRadar *r = shot->radar;
     const double wavelength_m = shot->preset->antenna.wavelength_m;
-    FaceJob      job = {.shot = shot,
-                        .look = {.frequency_hz = shot->preset->wave.centre_hz,
-                                 .k = 2 * pi_rad / wavelength_m,
-                                 .band = shot_band(shot)},
-                        .coarser = 1,
-                        .cell_m = light_mps / (2 * shot->preset->wave.bandwidth_hz),
-                        .beam_m = asin(shot_null(shot)) / 128};
-    int          tasks, room;
+    FaceJob      job = {
+             .shot = shot,
+             .look = {.frequency_hz = shot->preset->wave.centre_hz, .k = 2 * pi_rad / wavelength_m, .band = shot_band(shot)},
+             .coarser = 1,
+             .cell_m = light_mps / (2 * shot->preset->wave.bandwidth_hz),
+             .beam_m = asin(shot_null(shot)) / 128};
+    int tasks, room;
     memcpy(job.look.p_enu, shot->p_enu, sizeof job.look.p_enu);
     memcpy(job.look.right, shot->right, sizeof job.look.right);
     const Status status = list_tasks(&job.task, &tasks, shot);

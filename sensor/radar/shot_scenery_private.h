@@ -4,8 +4,8 @@
  *     shot_things.c    clutter: vehicles, machines, animals, stores
  *     shot_told.c      which detections are of it
  *
- * It hides what is behind it by shot_hidden, as relief and entities do. Its points are made once for all positions of the
- * beam, as those of the ground. */
+ * It hides what is behind it by shot_hidden, as relief and entities do. Its points are made once for all positions of
+ * the beam, as those of the ground. */
 #ifndef SENSOR_RADAR_SHOT_SCENERY_PRIVATE_H
 #define SENSOR_RADAR_SHOT_SCENERY_PRIVATE_H
 

@@ -1,5 +1,5 @@
-/* sensor/radar/shot_things.c: clutter in a shot (vehicles, machines, animals, stores): a few scatterers a thing, fixed to it,
- * of the mean cross section of its shape and aspect; and what faces and things of scenery share. */
+/* sensor/radar/shot_things.c: clutter in a shot (vehicles, machines, animals, stores): a few scatterers a thing, fixed
+ * to it, of the mean cross section of its shape and aspect; and what faces and things of scenery share. */
 #include "sensor/radar/shot_scenery_private.h"
 
 enum { thing_points = 12, stream_things = 0x3e200000, sources_grow = 256 };
@@ -77,9 +77,10 @@ static double reflectance(const RadarShot *shot, const Model *m)
     return 0.5 * (scatter_power(te) + scatter_power(tm));
 }
 
-/* Mean cross section in a direction (body axes, unit, to the antenna). By the table, and a tenth of the area across the line
- * of sight for what the shape has not (wheel arches, grilles, handles: estimate; without it a smooth car would be -17 dBsm
- * where cars were measured at 0 and more). Without a row that of a convex body: the area times what its surface reflects.
+/* Mean cross section in a direction (body axes, unit, to the antenna). By the table, and a tenth of the area across the
+ * line of sight for what the shape has not (wheel arches, grilles, handles: estimate; without it a smooth car would be
+ * -17 dBsm where cars were measured at 0 and more). Without a row that of a convex body: the area times what its
+ * surface reflects.
  */
 static double mean_rcs_m2(const RadarShot *shot, const Model *m, const PosedEntity *posed, const double u_body[3])
 {
@@ -88,7 +89,8 @@ static double mean_rcs_m2(const RadarShot *shot, const Model *m, const PosedEnti
     double              area_m2 = 0;
     for (int k = 0; k < 3; k++) {
         const int a = (k + 1) % 3, b = (k + 2) % 3;
-        area_m2 += fabs(u_body[k]) * (posed->box_high[a] - posed->box_low[a]) * (posed->box_high[b] - posed->box_low[b]);
+        area_m2 +=
+            fabs(u_body[k]) * (posed->box_high[a] - posed->box_low[a]) * (posed->box_high[b] - posed->box_low[b]);
     }
     return row ? thing_rcs_m2(row, shot_band(shot), u_body) + detail * area_m2 : reflectance(shot, m) * area_m2;
 }
@@ -136,8 +138,8 @@ static Status add_thing(RadarShot *shot, int object)
         const double   unit = sqrt(sigma_m2 / thing_points / (8 * pi_rad)), cross = unit * sqrt(r->things.hv);
         double         p[3], g[6];
         for (int k = 0; k < 3; k++)
-            p[k] = posed->box_low[k] +
-                   (posed->box_high[k] - posed->box_low[k]) * random_uniform(o->id, stream_things, 0, first + (uint64_t)k);
+            p[k] = posed->box_low[k] + (posed->box_high[k] - posed->box_low[k]) *
+                                           random_uniform(o->id, stream_things, 0, first + (uint64_t)k);
         random_normals(g, 6, o->id, stream_things, 1, first);
         RadarPoint *q = &point[count];
         *q = (RadarPoint){.share = 1, .widest = shot->scenery->widest, .source = source + 1};
@@ -152,8 +154,8 @@ static Status add_thing(RadarShot *shot, int object)
         q->same = shot->preset->transmits_h ? s.hh : s.vv;
         q->other = shot->preset->transmits_h ? s.vh : s.hv;
         q->path_m = 2 * (sight[count].range_m - shot->reference_m);
-        q->path_per_pulse_m = 2 * (shot_range_rate(shot, &sight[count], v) - shot->reference_rate_mps) /
-                              shot->preset->wave.repeat_hz;
+        q->path_per_pulse_m =
+            2 * (shot_range_rate(shot, &sight[count], v) - shot->reference_rate_mps) / shot->preset->wave.repeat_hz;
         slack_m[count++] = 2 * posed->radius_m; /* what is met so near before it is the thing itself */
     }
     if (count == 0) return STATUS_OK;

@@ -87,10 +87,11 @@ Status shot_tell(RadarShot *shot, Detection *detection)
             if (x >= 0 && x < map->columns) near[x] = true;
     tell_points(told, shot, near, detection);
     for (int d = 0; d < f->detections; d++) {
-        const double complex cell = map->cell[(size_t)detection[d].row * (size_t)map->columns + (size_t)detection[d].column];
-        const double         power = scatter_power(told[d].scenery);
-        int                  most = -1;
-        DetectedScenery     *of = &detection[d].scenery;
+        const double complex cell =
+            map->cell[(size_t)detection[d].row * (size_t)map->columns + (size_t)detection[d].column];
+        const double     power = scatter_power(told[d].scenery);
+        int              most = -1;
+        DetectedScenery *of = &detection[d].scenery;
         of->share = fmin(power / fmax(scatter_power(cell), 1e-300), 1);
         if (!(of->share >= least_share) || !(power > scatter_power(told[d].entities))) continue;
         for (int k = 0; k < told[d].sources; k++)

@@ -99,9 +99,9 @@ typedef struct Wall {
 
 static void sum_piece(void *user, const Piece *piece)
 {
-    Wall          *w = user;
-    double         p[3], to[3], path_m;
-    ScatterMatrix  s;
+    Wall         *w = user;
+    double        p[3], to[3], path_m;
+    ScatterMatrix s;
     piece_place(p, &w->facade.plane, piece->middle[0], piece->middle[1]);
     v3_sub(to, p, w->look.p_enu);
     path_m = 2 * v3_length(to);
@@ -157,8 +157,9 @@ static void a_plate_is_a_plate(void **state)
             Wall         w = {.p = {0, 0, 1}, .wide_m = a, .high_m = b, .facade = {.row = &even, .surface = metal}};
             sum_wall(&w, az, el, far_m, side_m);
             const double s = cos(el) * sin(az), t = sin(el);
-            const double want = 4 * pi_rad *
-                                pow(a * b / lambda_m * cos(el) * cos(az) * sinc(k_rad_m * a * s) * sinc(k_rad_m * b * t), 2);
+            const double want =
+                4 * pi_rad *
+                pow(a * b / lambda_m * cos(el) * cos(az) * sinc(k_rad_m * a * s) * sinc(k_rad_m * b * t), 2);
             worst = fmax(worst, fmax(fabs(db(w.hh) - 10 * log10(want)), fabs(db(w.vv) - 10 * log10(want))));
         }
     print_message("a plate of 3 by 2 m, normal and side lobes, HH and VV: %.4f dB from its closed form\n", worst);
@@ -198,15 +199,17 @@ static void a_wall_on_the_ground_is_a_dihedral(void **state)
         w.facade.surface = (RadarSurface){.kind = RADAR_HALF_SPACE, .eps = concrete, .rough_m = wall_rms_m};
         w.ground = (GroundSurface){.eps = road, .rms_m = road_rms_m};
         sum_wall(&w, az, el, far_m, side_m);
-        const double rough = exp(-2 * pow(k_rad_m * wall_rms_m * cos(el), 2) - 2 * pow(k_rad_m * road_rms_m * sin(el), 2));
+        const double rough =
+            exp(-2 * pow(k_rad_m * wall_rms_m * cos(el), 2) - 2 * pow(k_rad_m * road_rms_m * sin(el), 2));
         for (int te = 0; te < 2; te++) {
             const double both = cabs(fresnel(concrete, cos(el), te) * fresnel(road, sin(el), te)) * rough;
             if (both < ground_least_coherence) continue;
             worst_rough = fmax(worst_rough, fabs(db(te ? w.hh : w.vv) - 10 * log10(peak * both * both)));
         }
     }
-    print_message("a wall on the ground, 4 to 46 degrees: metal %.4f dB, off its normal %.4f dB, concrete on a road %.4f dB\n",
-                  worst, worst_off, worst_rough);
+    print_message(
+        "a wall on the ground, 4 to 46 degrees: metal %.4f dB, off its normal %.4f dB, concrete on a road %.4f dB\n",
+        worst, worst_off, worst_rough);
     CHECK(worst < 0.1 && worst_off < 0.1 && worst_rough < 0.1);
 }
 
@@ -238,8 +241,9 @@ static void near_walls_are_summed_as_waves_are_bent(void **state)
             }
         sum *= step_m * step_m * cos(tilt) / lambda_m * (w.by_ground ? 2 : 1);
         worst = fmax(worst, fabs(db(w.hh) - db(sum)));
-        print_message("%s at %.0f m: %.2f dBsm, integral %.2f, from afar %.2f\n", w.by_ground ? "by the ground" : "directly",
-                      range_m, db(w.hh), db(sum), 10 * log10((w.by_ground ? 16 : 4) * pi_rad * pow(a * b * cos(tilt) / lambda_m, 2)));
+        print_message("%s at %.0f m: %.2f dBsm, integral %.2f, from afar %.2f\n",
+                      w.by_ground ? "by the ground" : "directly", range_m, db(w.hh), db(sum),
+                      10 * log10((w.by_ground ? 16 : 4) * pi_rad * pow(a * b * cos(tilt) / lambda_m, 2)));
     }
     CHECK(worst < 0.1);
 }
@@ -252,18 +256,25 @@ static void what_is_scattered_is_lamberts(void **state)
     const RadarSurface brick = {.kind = RADAR_HALF_SPACE, .eps = 3.91 - 0.02 * I, .rough_m = 0.4e-3};
     const FacadeRow    row = {.scattered = {0.3, 0.4, 0.5}, .hv = 0.2, .uneven_length_m = 1};
     for (int n = 0; n < 3; n++) {
-        const double  cosine = cos(20 * n * rad_per_deg), s = 0.4;
-        const double  rough = exp(-4 * pow(k_rad_m * brick.rough_m * cosine, 2)), share = 1 - (1 - s * s) * rough;
-        const double  te = cabs(fresnel(brick.eps, cosine, true)), tm = cabs(fresnel(brick.eps, cosine, false));
-        const double  want = 4 * share * 0.5 * (te * te + tm * tm) * cosine * cosine;
-        double        sum[3] = {0, 0, 0};
-        const int     pieces = 20000;
-        Facade        f = {.plane = {.n = {0, 1, 0}, .s = {-1, 0, 0}, .t = {0, 0, 1}}, .row = &row, .surface = brick, .bumps = 5};
-        FacadeLook    look = {.p_enu = {0, 1e6 * cosine, 1e6 * sqrt(1 - cosine * cosine)},
-                              .frequency_hz = frequency_hz, .k = k_rad_m, .band = CLUTTER_KA};
+        const double cosine = cos(20 * n * rad_per_deg), s = 0.4;
+        const double rough = exp(-4 * pow(k_rad_m * brick.rough_m * cosine, 2)), share = 1 - (1 - s * s) * rough;
+        const double te = cabs(fresnel(brick.eps, cosine, true)), tm = cabs(fresnel(brick.eps, cosine, false));
+        const double want = 4 * share * 0.5 * (te * te + tm * tm) * cosine * cosine;
+        double       sum[3] = {0, 0, 0};
+        const int    pieces = 20000;
+        Facade       f = {
+                  .plane = {.n = {0, 1, 0}, .s = {-1, 0, 0}, .t = {0, 0, 1}}, .row = &row, .surface = brick, .bumps = 5};
+        FacadeLook look = {.p_enu = {0, 1e6 * cosine, 1e6 * sqrt(1 - cosine * cosine)},
+                           .frequency_hz = frequency_hz,
+                           .k = k_rad_m,
+                           .band = CLUTTER_KA};
         for (int i = 0; i < pieces; i++) {
-            const Piece   piece = {.i = i % 100, .j = i / 100, .corners = 4, .area_m2 = 0.25,
-                                   .corner = {{0, 0}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}}, .middle = {0.25, 0.25}};
+            const Piece   piece = {.i = i % 100,
+                                   .j = i / 100,
+                                   .corners = 4,
+                                   .area_m2 = 0.25,
+                                   .corner = {{0, 0}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}},
+                                   .middle = {0.25, 0.25}};
             ScatterMatrix m, again;
             facade_echo(&m, &f, &piece, &look, false);
             facade_echo(&again, &f, &piece, &look, false);
@@ -272,8 +283,9 @@ static void what_is_scattered_is_lamberts(void **state)
             sum[2] += 4 * pi_rad * scatter_power(m.hv) / 0.25;
         }
         CHECK_NEAR(facade_sigma0(&row, CLUTTER_KA, &brick, k_rad_m, cosine), want, 1e-12);
-        print_message("scattered at %d degrees: sigma0 %.2f dB; of pieces %.2f, %.2f, HV %.2f\n", 20 * n, 10 * log10(want),
-                      10 * log10(sum[0] / pieces), 10 * log10(sum[1] / pieces), 10 * log10(sum[2] / pieces));
+        print_message("scattered at %d degrees: sigma0 %.2f dB; of pieces %.2f, %.2f, HV %.2f\n", 20 * n,
+                      10 * log10(want), 10 * log10(sum[0] / pieces), 10 * log10(sum[1] / pieces),
+                      10 * log10(sum[2] / pieces));
         for (int p = 0; p < 3; p++) /* four standard errors of 20,000 exponential powers */
             CHECK_NEAR(sum[p] / pieces / want / (p == 2 ? 0.2 : 1), 1, 4 / sqrt(pieces));
     }
@@ -302,12 +314,14 @@ static void bumps_are_of_their_height_and_continuous(void **state)
 static void bumps_take_from_the_mirror(void **state)
 {
     (void)state;
-    const double lambda_m = 2 * pi_rad / k_rad_m, a = 8, b = 8, side_m[2] = {0.125, 0.125};
-    FacadeRow    row = {.material = "other", .uneven_m = 0.4e-3, .uneven_length_m = 0.5};
+    const double   lambda_m = 2 * pi_rad / k_rad_m, a = 8, b = 8, side_m[2] = {0.125, 0.125};
+    FacadeRow      row = {.material = "other", .uneven_m = 0.4e-3, .uneven_length_m = 0.5};
     double complex sum = 0;
     const int      walls = 12;
     for (int n = 0; n < walls; n++) {
-        Wall w = {.p = {0, 0, 0.5 * b}, .wide_m = a, .high_m = b,
+        Wall w = {.p = {0, 0, 0.5 * b},
+                  .wide_m = a,
+                  .high_m = b,
                   .facade = {.row = &row, .surface = metal, .bumps = (uint64_t)n + 1}};
         sum_wall(&w, 0, 0, 1e8, side_m);
         sum += w.hh / walls;
@@ -323,9 +337,9 @@ static void bumps_take_from_the_mirror(void **state)
 static void tables_are_read_and_refused(void **state)
 {
     (void)state;
-    char          path[4096];
-    FacadeTable   table;
-    ThingTable    things;
+    char        path[4096];
+    FacadeTable table;
+    ThingTable  things;
     CHECK(etc_path(path, sizeof path, "radar/facades.csv") && facade_table_open(&table, path) == STATUS_OK);
     assert_string_equal(facade_row(&table, "brick_red")->material, "brick");
     assert_string_equal(facade_row(&table, "no such thing")->material, "other");
@@ -335,8 +349,9 @@ static void tables_are_read_and_refused(void **state)
     const double side_m2 = pow(10, 0.1 * car->dbsm[CLUTTER_KA][3]);
     CHECK_NEAR(thing_rcs_m2(car, CLUTTER_KA, (const double[3]){0, -1, 0}), side_m2, 1e-9 * side_m2);
     CHECK_NEAR(thing_rcs_m2(car, CLUTTER_KA, (const double[3]){0, 1, 0}), side_m2, 1e-9 * side_m2);
-    CHECK_NEAR(10 * log10(thing_rcs_m2(car, CLUTTER_KA, (const double[3]){cos(15 * rad_per_deg), sin(15 * rad_per_deg), 0})),
-               0.5 * (car->dbsm[CLUTTER_KA][0] + car->dbsm[CLUTTER_KA][1]), 1e-9);
+    CHECK_NEAR(
+        10 * log10(thing_rcs_m2(car, CLUTTER_KA, (const double[3]){cos(15 * rad_per_deg), sin(15 * rad_per_deg), 0})),
+        0.5 * (car->dbsm[CLUTTER_KA][0] + car->dbsm[CLUTTER_KA][1]), 1e-9);
     static const char *const wrong[] = {
         "material,scattered_ku,scattered_ka,scattered_w,hv_vv_db,uneven_mm,uneven_m\nbrick,0.1,0.1,0.1,-8,1,1\n",
         "material,scattered_ku,scattered_ka,scattered_w,hv_vv_db,uneven_mm,uneven_m\nother,1.1,0.1,0.1,-8,1,1\n",

@@ -1,6 +1,6 @@
-/* Scenery in the seeker's radar, whole chain: a wall over ground at the range, Doppler and level that an integral of the
- * test's own has; what stands behind it; a car that drives; what detections are of; and the same bits for threads, skips, and
- * where there is none. labels: physics */
+/* Scenery in the seeker's radar, whole chain: a wall over ground at the range, Doppler and level that an integral of
+ * the test's own has; what stands behind it; a car that drives; what detections are of; and the same bits for threads,
+ * skips, and where there is none. labels: physics */
 #include "tests/sensor/seeker_ground.h"
 
 #include "entities/shapes/mesh_builder.h"
@@ -50,13 +50,24 @@ static int open_built(void **state)
     if (opened != 0) return opened;
     /* body x along the wall, y away from it: the wall of -y faces the antenna over the origin */
     const double level_m = sqrt(aim_m * aim_m - height_m * height_m), c = sqrt(0.5);
-    built.scenery = (Scenery){.models = 2, .objects = 3, .movers = 1, .paths = 2, .model = built.model, .object = built.object,
-                              .mover = &built.mover, .path_enu = built.path};
-    if (build_house(&built.model[0]) != STATUS_OK || parametric_build(&built.model[1], "car", 0.02) != STATUS_OK) return -1;
-    const double house[9] = {c, -c, 0, -c, -c, 0, 0, 0, -1}; /* columns: x to the south-east, y to the south-west, z down */
+    built.scenery = (Scenery){.models = 2,
+                              .objects = 3,
+                              .movers = 1,
+                              .paths = 2,
+                              .model = built.model,
+                              .object = built.object,
+                              .mover = &built.mover,
+                              .path_enu = built.path};
+    if (build_house(&built.model[0]) != STATUS_OK || parametric_build(&built.model[1], "car", 0.02) != STATUS_OK)
+        return -1;
+    const double house[9] = {c, -c, 0, -c, -c,
+                             0, 0,  0, -1}; /* columns: x to the south-east, y to the south-west, z down */
     for (int k = 0; k < 3; k++) {
-        built.object[k] = (SceneryObject){.id = 71 + (uint64_t)k, .kind = k ? SCENERY_CLUTTER : SCENERY_BUILDINGS,
-                                          .class = k ? CLUTTER_CAR : CLUTTER_NONE, .model = k > 0, .state = -1};
+        built.object[k] = (SceneryObject){.id = 71 + (uint64_t)k,
+                                          .kind = k ? SCENERY_CLUTTER : SCENERY_BUILDINGS,
+                                          .class = k ? CLUTTER_CAR : CLUTTER_NONE,
+                                          .model = k > 0,
+                                          .state = -1};
         memcpy(built.object[k].r_enu_from_body, house, sizeof house);
     }
     along_axis(built.foot, level_m);
@@ -97,8 +108,14 @@ static int close_built(void **state)
 static SeekerRadar *radar_of(bool scenery, bool plain, bool ground)
 {
     SeekerRadar            *radar;
-    const SeekerRadarConfig config = {.preset = preset, .catalog = stage.catalog_path, .isa = "avx2", .ground = ground,
-                                      .ground_bounce = true, .scenery = scenery, .seed = 3, .given = built.given};
+    const SeekerRadarConfig config = {.preset = preset,
+                                      .catalog = stage.catalog_path,
+                                      .isa = "avx2",
+                                      .ground = ground,
+                                      .ground_bounce = true,
+                                      .scenery = scenery,
+                                      .seed = 3,
+                                      .given = built.given};
     CHECK(seeker_radar_create(&radar, &config) == STATUS_OK);
     if (!plain) return radar;
     for (int i = 0; i < radar->facades.count; i++) {
@@ -122,7 +139,8 @@ static double complex mirrored(double complex eps, double cosine)
     return (eps * cosine - q) / (eps * cosine + q); /* vertical polarisation: in the plane of incidence of both */
 }
 
-/* Cross section of wall and ground: an integral over the wall of exact paths, Fresnel's coefficients and Ament's factors. */
+/* Cross section of wall and ground: an integral over the wall of exact paths, Fresnel's coefficients and Ament's
+ * factors. */
 static double dihedral_m2(const RadarScene *scene, double wall_rms_m)
 {
     const double *e = scene->view->p_enu, lambda_m = light_mps / 35e9, k = 2 * pi_rad / lambda_m, step_m = 0.02;
@@ -141,9 +159,11 @@ static double dihedral_m2(const RadarScene *scene, double wall_rms_m)
         }
     const double complex both = mirrored(concrete_re - I * concrete_im, cosine) * mirrored(road_re - I * road_im, sine);
     const double         rough = exp(-2 * pow(k * wall_rms_m * cosine, 2) - 2 * pow(k * road_rms_m * sine, 2));
-    print_message("a house at %.0f m, %.1f degrees above: dihedral from afar %.1f dBsm, waves bent %.1f dB, materials %.1f dB\n",
-                  range_m, asin(sine) / rad_per_deg, 10 * log10(16 * pi_rad * pow(wall_wide_m * wall_high_m * cosine / lambda_m, 2)),
-                  20 * log10(cabs(sum) / (wall_wide_m * wall_high_m)), 20 * log10(cabs(both) * rough));
+    print_message(
+        "a house at %.0f m, %.1f degrees above: dihedral from afar %.1f dBsm, waves bent %.1f dB, materials %.1f dB\n",
+        range_m, asin(sine) / rad_per_deg,
+        10 * log10(16 * pi_rad * pow(wall_wide_m * wall_high_m * cosine / lambda_m, 2)),
+        20 * log10(cabs(sum) / (wall_wide_m * wall_high_m)), 20 * log10(cabs(both) * rough));
     return 16 * pi_rad * pow(cabs(sum * both) * cosine * rough / lambda_m, 2);
 }
 
@@ -163,10 +183,11 @@ static void a_wall_flashes_at_its_foot(void **state)
     const double range_m = v3_length(to), rate_mps = -v3_dot(to, flying) / range_m;
     CHECK(f->detections > 0);
     const Detection *d = &f->detection[0];
-    print_message("found at %+.2f m of the foot, %+.2f m/s of it, %.2f dBsm for %.2f; %d pieces, %d by the ground, %d hidden; "
-                  "share of scenery %.3f\n",
-                  d->range_m - range_m, d->range_rate_mps - rate_mps, 10 * log10(d->rcs_m2), 10 * log10(want_m2),
-                  f->scenery.pieces, f->scenery.by_ground, f->scenery.hidden, d->scenery.share);
+    print_message(
+        "found at %+.2f m of the foot, %+.2f m/s of it, %.2f dBsm for %.2f; %d pieces, %d by the ground, %d hidden; "
+        "share of scenery %.3f\n",
+        d->range_m - range_m, d->range_rate_mps - rate_mps, 10 * log10(d->rcs_m2), 10 * log10(want_m2),
+        f->scenery.pieces, f->scenery.by_ground, f->scenery.hidden, d->scenery.share);
     CHECK_NEAR(d->range_m, range_m, f->map.metre_per_column);
     CHECK_NEAR(d->range_rate_mps, rate_mps, f->map.mps_per_row);
     CHECK_NEAR(10 * log10(d->rcs_m2 / want_m2), 0, 1);
@@ -185,7 +206,8 @@ static void place_tank(RadarScene *scene, double beyond_m)
     Origin                     origin;
     double                     p[3];
     along_axis(p, v3_length((const double[3]){built.foot[0], built.foot[1], 0}) + deep_m + beyond_m);
-    built.tank = (SnapshotEntity){.id = {1, 1, 1}, .type = type, .model = catalog_find(stage.catalog, type, &origin, NULL)};
+    built.tank =
+        (SnapshotEntity){.id = {1, 1, 1}, .type = type, .model = catalog_find(stage.catalog, type, &origin, NULL)};
     const Model *model = catalog_model(stage.catalog, built.tank.model);
     CHECK(model->node_count <= 256);
     model_pose(built.node, model, NULL);
@@ -226,11 +248,12 @@ static void a_house_hides_what_is_behind_it(void **state)
     stage.world.scenery = built.tracer;
     CHECK(open->targets == 1 && hidden->targets == 1 && quiet->targets == 1);
     const double range_m = open->target[0].range_m;
-    print_message("tank behind a house: visible %.3f, %.3f without its echoes, %.3f in the open; found %d, %d, %d times; "
-                  "ground out of sight %d\n",
-                  hidden->target[0].visible, quiet->target[0].visible, open->target[0].visible,
-                  found_near(hidden, range_m, &told), found_near(quiet, range_m, &told), found_near(open, range_m, &told),
-                  quiet->ground_hidden);
+    print_message(
+        "tank behind a house: visible %.3f, %.3f without its echoes, %.3f in the open; found %d, %d, %d times; "
+        "ground out of sight %d\n",
+        hidden->target[0].visible, quiet->target[0].visible, open->target[0].visible,
+        found_near(hidden, range_m, &told), found_near(quiet, range_m, &told), found_near(open, range_m, &told),
+        quiet->ground_hidden);
     CHECK(open->target[0].visible > 0.95 && found_near(open, range_m, &told) > 0);
     told = 0;
     CHECK(hidden->target[0].visible == 0 && quiet->target[0].visible == 0);
@@ -242,7 +265,8 @@ static void a_house_hides_what_is_behind_it(void **state)
 
 /* ---- what drives and what stands ----------------------------------------------------------------- */
 
-/* The driving car: its range rate, which is no ground's. Detections of both name them; none of the tank is of scenery. */
+/* The driving car: its range rate, which is no ground's. Detections of both name them; none of the tank is of scenery.
+ */
 static void cars_are_told_apart(void **state)
 {
     (void)state;
@@ -268,11 +292,12 @@ static void cars_are_told_apart(void **state)
         driving++;
         print_message("driving car: %+.2f m, %+.2f m/s of where it is, %.1f dBsm, share %.2f\n", d->range_m - range_m,
                       d->range_rate_mps - rate_mps, 10 * log10(d->rcs_m2), d->scenery.share);
-        CHECK(fabs(d->range_m - range_m) < 3 && fabs(d->range_rate_mps - rate_mps) < 2 * f->map.mps_per_row && d->moving);
+        CHECK(fabs(d->range_m - range_m) < 3 && fabs(d->range_rate_mps - rate_mps) < 2 * f->map.mps_per_row &&
+              d->moving);
         CHECK(d->scenery.class == CLUTTER_CAR && d->scenery.share > 0.5);
     }
-    print_message("%d detections: house %d, parked car %d, driving %d, near the tank %d; %d of scenery\n", f->detections, house,
-                  parked, driving, tank, f->scenery.detections);
+    print_message("%d detections: house %d, parked car %d, driving %d, near the tank %d; %d of scenery\n",
+                  f->detections, house, parked, driving, tank, f->scenery.detections);
     CHECK(driving > 0 && house > 0 && parked > 0 && tank > 0 && tank < 1000);
     CHECK(f->scenery.things == 2 && f->scenery.detections >= driving + house + parked);
     seeker_radar_destroy(radar);
@@ -296,8 +321,8 @@ static void the_same_bits(void **state)
     const RadarFrame *two = measure(with, &scene, stage.pool), *one = measure(with, &scene, NULL);
     CHECK(same_map(two, one) && two->scenery.pieces == one->scenery.pieces);
     /* turned so that the house is at the edge: some of its faces are out of the beam */
-    RadarScene aside = scene;
-    View       turned = stage.view;
+    RadarScene   aside = scene;
+    View         turned = stage.view;
     const double c = cos(0.084), s = sin(0.084);
     for (int k = 0; k < 3; k++) {
         const double right = stage.view.r_enu_from_cam[3 * k], ahead = stage.view.r_enu_from_cam[3 * k + 2];
@@ -308,9 +333,10 @@ static void the_same_bits(void **state)
     const RadarFrame *skipped = measure(with, &aside, stage.pool);
     aside.skips_off = skips_all_off;
     const RadarFrame *all = measure(with, &aside, stage.pool);
-    print_message("%d pieces, %d hidden, %d by the ground, %d things; at the beam's edge %d triangles skipped, %d without skips\n",
-                  two->scenery.pieces, two->scenery.hidden, two->scenery.by_ground, two->scenery.things,
-                  skipped->scenery.skipped, all->scenery.skipped);
+    print_message(
+        "%d pieces, %d hidden, %d by the ground, %d things; at the beam's edge %d triangles skipped, %d without skips\n",
+        two->scenery.pieces, two->scenery.hidden, two->scenery.by_ground, two->scenery.things, skipped->scenery.skipped,
+        all->scenery.skipped);
     CHECK(same_map(skipped, all) && all->scenery.skipped == 0 && skipped->scenery.skipped > 0);
     stage.world.scenery = NULL;
     const RadarFrame *none = measure(with, &scene, stage.pool), *off = measure(without, &scene, stage.pool);

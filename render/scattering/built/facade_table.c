@@ -19,9 +19,12 @@ static const TableColumn columns[] = {
     {"uneven_mm", TABLE_DOUBLE, TABLE_AT(Row, uneven_m), .low = 0, .high = 1000, .unit = 1e-3},
     {"uneven_m", TABLE_DOUBLE, TABLE_AT(Row, uneven_length_m), .low = 0.05, .high = 100},
 };
-static const TableFormat format = {
-    "radar facades",        columns, sizeof columns / sizeof *columns, "etc/radar/facades.csv explains the columns", 1,
-    .most_rows = facade_rows_most};
+static const TableFormat format = {"radar facades",
+                                   columns,
+                                   sizeof columns / sizeof *columns,
+                                   "etc/radar/facades.csv explains the columns",
+                                   1,
+                                   .most_rows = facade_rows_most};
 
 static Status take_row(void *user, const void *read, const TableRows *rows, int number)
 {
@@ -85,7 +88,7 @@ double facade_height(const FacadeRow *row, uint64_t seed, double s_m, double t_m
     for (int n = 0; n < 4; n++) {
         const double a = i + (n & 1), b = j + (n >> 1), x = fabs(s - a), y = fabs(t - b);
         /* smooth steps, so that slopes are continuous where cells of nodes meet */
-        const double weight = (1 - x * x * (3 - 2 * x)) * (1 - y * y * (3 - 2 * y));
+        const double   weight = (1 - x * x * (3 - 2 * x)) * (1 - y * y * (3 - 2 * y));
         const uint64_t node = (uint64_t)(uint32_t)(int32_t)a << 32 | (uint32_t)(int32_t)b;
         sum += weight * random_normal(seed, stream_bumps, 0, node);
         squares += weight * weight;

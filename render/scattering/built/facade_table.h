@@ -1,5 +1,5 @@
-/* render/scattering/built/facade_table.h: how walls, roofs and other built surfaces scatter what they do not mirror, and
- * how far they are from planes, from etc/radar/facades.csv (with a source a row). */
+/* render/scattering/built/facade_table.h: how walls, roofs and other built surfaces scatter what they do not mirror,
+ * and how far they are from planes, from etc/radar/facades.csv (with a source a row). */
 #ifndef RENDER_SCATTERING_BUILT_FACADE_TABLE_H
 #define RENDER_SCATTERING_BUILT_FACADE_TABLE_H
 
@@ -34,7 +34,8 @@ double facade_diffuse_share(const FacadeRow *row, ClutterBand band, const RadarS
 /* Mean cross section by area of what is scattered: 4 share Gamma^2 cos^2, Lambert's law. Gamma^2: mean over
  * polarisations of the power that a smooth surface of the material reflects. So what is mirrored and what is scattered
  * are together what Fresnel's equations return. Source: V. Degli-Esposti, F. Fuschini, E. M. Vitucci, G. Falciasecca,
- * Measurement and modelling of scattering from buildings, IEEE Trans. Antennas Propag. 55(1), 2007 (Lambertian lobe). */
+ * Measurement and modelling of scattering from buildings, IEEE Trans. Antennas Propag. 55(1), 2007 (Lambertian lobe).
+ */
 double facade_sigma0(const FacadeRow *row, ClutterBand band, const RadarSurface *surface, double k, double cosine);
 
 /* Height of an uneven surface over its plane at (s, t) of that plane, m: bumps of a seed, rms row->uneven_m

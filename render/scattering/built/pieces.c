@@ -97,8 +97,7 @@ double pieces_bound(const PiecePlane *plane, const double corner[3][3], const do
     return (high[0] - low[0] + 1) * (high[1] - low[1] + 1);
 }
 
-bool pieces_cut(const PiecePlane *plane, const double corner[3][3], const double side_m[2], PieceTake *take,
-                void *user)
+bool pieces_cut(const PiecePlane *plane, const double corner[3][3], const double side_m[2], PieceTake *take, void *user)
 {
     Outline      left, row, rest, cell;
     double       low[2], high[2];

@@ -27,12 +27,12 @@ typedef struct Piece {
     double  middle[2], area_m2;            /* of its centroid */
 } Piece;
 
-/* Gives each piece of a triangle in cells of side_m along s and t to take, row by row of t; pieces under 1e-6 of a cell,
- * which rounding makes, are left out. Their areas add up to the triangle's. A triangle over more than 2^20 cells is
- * left out: returns false. */
+/* Gives each piece of a triangle in cells of side_m along s and t to take, row by row of t; pieces under 1e-6 of a
+ * cell, which rounding makes, are left out. Their areas add up to the triangle's. A triangle over more than 2^20 cells
+ * is left out: returns false. */
 typedef void PieceTake(void *user, const Piece *piece);
-bool pieces_cut(const PiecePlane *plane, const double corner[3][3], const double side_m[2], PieceTake *take,
-                void *user);
+bool         pieces_cut(const PiecePlane *plane, const double corner[3][3], const double side_m[2], PieceTake *take,
+                        void *user);
 /* How many cells the box about a triangle meets: a bound on its pieces. */
 double pieces_bound(const PiecePlane *plane, const double corner[3][3], const double side_m[2]);
 

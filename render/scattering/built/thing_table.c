@@ -13,8 +13,10 @@ typedef struct Row {
 
 static const char *band_named(int k) { return clutter_band_name((ClutterBand)k); }
 
-#define ASPECT(deg, k)                                                                                            \
-    {"dbsm_" #deg, TABLE_DOUBLE, offsetof(Row, dbsm) + (k) * sizeof(double), sizeof(double), .low = -60, .high = 60}
+#define ASPECT(deg, k)                                                                                                 \
+    {                                                                                                                  \
+        "dbsm_" #deg, TABLE_DOUBLE, offsetof(Row, dbsm) + (k) * sizeof(double), sizeof(double), .low = -60, .high = 60 \
+    }
 static const TableColumn columns[] = {
     {"name", TABLE_NAME, TABLE_AT(Row, name), .absent = TABLE_REQUIRED},
     {"band", TABLE_NAMED, TABLE_AT(Row, band), .low = 0, .high = CLUTTER_BAND_COUNT - 1, .named = band_named},
@@ -43,7 +45,8 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     while (i < to->table.count && strcmp(to->table.row[i].name, row->name) != 0) i++;
     if (i == thing_rows_most) return table_rows_refuse(rows, number, "name", "no more than %d shapes", thing_rows_most);
     if (i == to->table.count) memcpy(to->table.row[to->table.count++].name, row->name, sizeof row->name);
-    if (to->bands[i] >> row->band & 1) return table_rows_refuse(rows, number, "band", "a band that %s has no row of yet", row->name);
+    if (to->bands[i] >> row->band & 1)
+        return table_rows_refuse(rows, number, "band", "a band that %s has no row of yet", row->name);
     to->bands[i] |= 1u << row->band;
     memcpy(to->table.row[i].dbsm[row->band], row->dbsm, sizeof row->dbsm);
     return STATUS_OK;

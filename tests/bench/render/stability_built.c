@@ -1,5 +1,5 @@
-/* tests/bench/render/stability_built.c: walls to a radar, under stress: faces without area, needles, seen along their plane,
- * with the antenna on them, behind them or beneath the ground, and from a metre to a million kilometres. */
+/* tests/bench/render/stability_built.c: walls to a radar, under stress: faces without area, needles, seen along their
+ * plane, with the antenna on them, behind them or beneath the ground, and from a metre to a million kilometres. */
 #include "tests/bench/suites.h"
 #include "tests/bench/stress.h"
 
@@ -41,8 +41,8 @@ static void look_from(Looks *l, const double from[3], double f_hz)
     memcpy(l->look.right, right, sizeof l->look.right);
 }
 
-/* Faces of no area, needles, slivers across an axis, upright, level and any: values that are not finite, and areas that are
- * not the triangle's. */
+/* Faces of no area, needles, slivers across an axis, upright, level and any: values that are not finite, and areas that
+ * are not the triangle's. */
 static double faces(void *user, bool quick)
 {
     Dice   dice = {.stream = 93};
@@ -70,13 +70,14 @@ static double faces(void *user, bool quick)
     return wrong;
 }
 
-/* An upright wall of 2 by 2 m from places in its plane, on it, behind it, beneath the ground, at 1 mm and at 1e9 m, from
- * 0.1 to 300 GHz: finite, and nothing from behind. */
+/* An upright wall of 2 by 2 m from places in its plane, on it, behind it, beneath the ground, at 1 mm and at 1e9 m,
+ * from 0.1 to 300 GHz: finite, and nothing from behind. */
 static double places(void *user, bool quick)
 {
     static const double corner[3][3] = {{2, 0, 0}, {0, 0, 0}, {0, 0, 2}};
-    static const double from[][3] = {{1, 0, 1},    {1, 1e-9, 1},   {1, 1e-3, 1}, {40, 0, 1},   {40, 1e-12, 1}, {1, -5, 1},
-                                     {1, 50, -20}, {1, 50, -1},    {1, 1e9, 3},  {0, 1e-300, 0}, {1, 0, 1e6},   {1, 30, 1e-7}};
+    static const double from[][3] = {{1, 0, 1},      {1, 1e-9, 1},   {1, 1e-3, 1}, {40, 0, 1},
+                                     {40, 1e-12, 1}, {1, -5, 1},     {1, 50, -20}, {1, 50, -1},
+                                     {1, 1e9, 3},    {0, 1e-300, 0}, {1, 0, 1e6},  {1, 30, 1e-7}};
     double              wrong = 0;
     (void)user;
     for (int f = 0; f < (quick ? 2 : 8); f++)
