@@ -303,6 +303,72 @@ static void cars_are_told_apart(void **state)
     seeker_radar_destroy(radar);
 }
 
+/* ---- phases ------------------------------------------------------------------------------------------ */
+
+/* What a wall scatters keeps its phases: from a millimetre nearer its map is the same, turned by 2 k times that. */
+static void phases_stay_with_the_place(void **state)
+{
+    (void)state;
+    static const double still[3] = {0, 0, 0}, nearer_m = 1e-3;
+    const Weather       weather = weather_default();
+    SeekerRadar        *radar = radar_of(true, false, false);
+    const double        k = 2 * pi_rad * 35e9 / light_mps;
+    RadarScene          scene = scene_of(still, 1, &weather);
+    View                there = stage.view;
+    double complex      both = 0;
+    double              power[2] = {0, 0};
+    arena_reset(stage.arena);
+    const RadarFrame *one = measure(radar, &scene, stage.pool);
+    for (int c = 0; c < 3; c++) there.p_enu[c] += nearer_m * there.r_enu_from_cam[3 * c + 2];
+    scene.view = &there;
+    const RadarFrame *other = measure(radar, &scene, stage.pool);
+    const double      noise_w = one->receiver.noise_w * one->map.noise_share;
+    int               cells = 0;
+    for (int i = 0; i < one->map.rows * one->map.columns; i++) { /* the window is about the same range of both */
+        const double complex a = one->map.cell[i], b = other->map.cell[i];
+        if (!(scatter_power(a) > 300 * noise_w)) continue;
+        both += b * conj(a), power[0] += scatter_power(a), power[1] += scatter_power(b);
+        cells++;
+    }
+    const double alike = cabs(both) / sqrt(power[0] * power[1]), turned = carg(both * cexp(-2 * I * k * nearer_m));
+    print_message("%d cells of a house: %.4f alike from a millimetre nearer, phase %+.3f rad off 2 k d\n", cells, alike,
+                  turned);
+    CHECK(cells > 20 && alike > 0.99 && fabs(turned) < 0.05);
+    seeker_radar_destroy(radar);
+}
+
+/* A beam that scans has the flash of the wall where it is: range, and the middle of the sector. */
+static void a_scan_has_the_wall_where_it_is(void **state)
+{
+    (void)state;
+    const Weather           weather = weather_default();
+    const RadarScene        scene = scene_of(flying, 1, &weather);
+    SeekerRadar            *radar;
+    const SeekerRadarConfig config = {.preset = preset,
+                                      .catalog = stage.catalog_path,
+                                      .isa = "avx2",
+                                      .scenery = true,
+                                      .scan_rad = 0.2,
+                                      .scan_step = 0.5,
+                                      .seed = 3};
+    double                  to[3];
+    int                     at = 0;
+    CHECK(seeker_radar_create(&radar, &config) == STATUS_OK);
+    stage.snapshot = (Snapshot){0};
+    arena_reset(stage.arena);
+    const RadarFrame  *f = measure(radar, &scene, stage.pool);
+    const RadarSector *scan = f->scan;
+    for (int i = 0; i < scan->plan.positions * scan->columns; i++)
+        if (scan->power_w[i] > scan->power_w[at]) at = i;
+    v3_sub(to, built.foot, stage.view.p_enu);
+    const double range_m = f->reference_m + (at % scan->columns - scan->columns / 2) * f->map.metre_per_column;
+    print_message("scan of %d positions: brightest in %d, %.2f m beyond the wall's foot\n", scan->plan.positions,
+                  at / scan->columns, range_m - v3_length(to));
+    CHECK(abs(at / scan->columns - scan->plan.positions / 2) <= 1);
+    CHECK(range_m - v3_length(to) > -4 && range_m - v3_length(to) < 9); /* wall, roof or parapet of the house */
+    seeker_radar_destroy(radar);
+}
+
 /* ---- the same bits -------------------------------------------------------------------------------- */
 
 static bool same_map(const RadarFrame *a, const RadarFrame *b)
@@ -353,6 +419,8 @@ int main(void)
         cmocka_unit_test(a_wall_flashes_at_its_foot),
         cmocka_unit_test(a_house_hides_what_is_behind_it),
         cmocka_unit_test(cars_are_told_apart),
+        cmocka_unit_test(phases_stay_with_the_place),
+        cmocka_unit_test(a_scan_has_the_wall_where_it_is),
         cmocka_unit_test(the_same_bits),
     };
     return cmocka_run_group_tests(tests, open_built, close_built);
