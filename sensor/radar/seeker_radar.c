@@ -11,28 +11,6 @@ enum { fine_nice = 15, detections_most = 256, stream_noise = 0x3d000000 };
 static const double fog_top_m = 300;       /* above the ground; of fogs 100 .. 500 m deep: estimate */
 static const double no_reference_m = 1000; /* where there is neither an aim nor ground ahead */
 
-/* ---- points -------------------------------------------------------------------------------------- */
-
-RadarPoint *radar_points_room(RadarPoints *points, int more)
-{
-    if (more > INT32_MAX / 2 - points->count) return NULL;
-    const int need = points->count + more;
-    if (need > points->capacity) {
-        const int   capacity = need > 2 * points->capacity ? need : 2 * points->capacity;
-        RadarPoint *grown = realloc(points->point, (size_t)capacity * sizeof *grown);
-        if (!grown) return NULL;
-        points->point = grown;
-        points->capacity = capacity;
-    }
-    return points->point + points->count;
-}
-
-static void points_free(RadarPoints *points)
-{
-    free(points->point);
-    *points = (RadarPoints){0};
-}
-
 /* ---- what lasts -------------------------------------------------------------------------------- */
 
 static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
@@ -132,7 +110,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     echo_grid_destroy(r->echoes);
     centres_free(&r->centres);
     clutter_cache_destroy(r->drawn);
-    points_free(&r->points);
+    radar_points_free(&r->points);
     free(r->batch);
     free(r->sector_pulse);
     if (r->position) arena_destroy(r->position);

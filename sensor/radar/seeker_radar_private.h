@@ -2,6 +2,7 @@
  * (RadarShot): what the files of this folder share.
  *
  *     seeker_radar.c   what lasts; the order of work in a shot; the echoes of all points, the receiver, detections
+ *     radar_points.c   memory of the points
  *     radar_coarse.c   coarse signatures, and what is prepared of them
  *     shot_sight.c     the way from the antenna to a place, and what stands before it
  *     shot_targets.c   points of entities
@@ -52,6 +53,7 @@ typedef struct RadarPoints {
 
 /* Makes room for `more` points behind the last, which are not yet counted. NULL: out of memory. */
 RadarPoint *radar_points_room(RadarPoints *points, int more);
+void        radar_points_free(RadarPoints *points); /* accepts zeroes */
 
 /* ---- the radar and a shot -------------------------------------------------------------------------- */
 
