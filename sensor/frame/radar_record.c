@@ -5,6 +5,9 @@
 #include "sensor/frame/record_fields.h"
 #include "sensor/frame/records.h"
 
+#include <inttypes.h>
+#include <stdio.h>
+
 /* ---- hashes -------------------------------------------------------------------------------------- */
 
 int radar_arrays(FrameArray array[radar_arrays_most], const RadarFrame *r)
@@ -186,6 +189,59 @@ static const Field scan_rows[] = {
      FIELD_GET("string", scan_hash)},
 };
 
+/* NULL: it is not of scenery. */
+static const void *scenery_of_detection(const void *of)
+{
+    const DetectedScenery *on = &((const Detection *)of)->scenery;
+    return on->source > 0 ? on : NULL;
+}
+
+static json_t *detected_class(FieldAt *at)
+{
+    const DetectedScenery *on = at->of;
+    return json_string(on->class == CLUTTER_NONE ? "building" : scenery_class_name((SceneryClass)on->class));
+}
+
+static json_t *detected_id(FieldAt *at)
+{
+    char id[17];
+    snprintf(id, sizeof id, "%016" PRIx64, ((const DetectedScenery *)at->of)->id);
+    return json_string(id);
+}
+
+#define OF_DETECTED(member) FIELD_MEMBER(DetectedScenery, member)
+
+static const Field detected_rows[] = {
+    {"class", "", "", "", "building (all that is built), or a class of clutter[]", FIELD_GET("string", detected_class),
+     FIELD_EXACT, .newer = true},
+    {"id", "", "16 hexadecimal digits", "", "of its brightest thing: of a thing that of clutter[]",
+     FIELD_GET("string", detected_id), FIELD_EXACT, .newer = true},
+    {"share", "", "0.5 .. 1", "", "of the detection's power that scenery makes by itself", OF_DETECTED(share),
+     FIELD_WITHIN(0.02, 0), .newer = true},
+};
+
+/* NULL: there is none about. */
+static const void *scenery_of(const void *of)
+{
+    const RadarSceneryCount *n = &((const RadarFrame *)of)->scenery;
+    return n->objects > 0 ? n : NULL;
+}
+
+#define OF_SCENERY(member) FIELD_MEMBER(RadarSceneryCount, member)
+
+static const Field scenery_rows[] = {
+    {"pieces", "", "", "", "pieces of walls, roofs and other faces in sight", OF_SCENERY(pieces), FIELD_WITHIN(0, 0.01),
+     .newer = true},
+    {"hidden", "", "", "", "of those that face the radar, out of sight", OF_SCENERY(hidden), FIELD_WITHIN(0, 0.01),
+     .newer = true},
+    {"by_ground", "", "", "", "pieces of walls that the ground before them mirrors, too", OF_SCENERY(by_ground),
+     FIELD_WITHIN(0, 0.01), .newer = true},
+    {"things", "", "", "", "vehicles and other clutter of which something is in sight", OF_SCENERY(things), FIELD_EXACT,
+     .newer = true},
+    {"detections", "", "", "", "of detections[] that are of scenery: false alarms on it", OF_SCENERY(detections),
+     FIELD_EXACT, .newer = true},
+};
+
 static const Field detection_rows[] = {
     {"range_m", "m", "from the sensor", "", "between cells", OF_DETECTION(range_m), FIELD_WITHIN(1e-3, 1e-6)},
     {"range_rate_mps", "m/s", "above 0: receding", "", "between cells; folds over at half of the map",
@@ -199,6 +255,9 @@ static const Field detection_rows[] = {
     {"rcs_dbsm", "dB over 1 m2", "", "", "by the radar equation, as one point where it was found", OF_DETECTION(rcs_m2),
      .as = field_db, FIELD_WITHIN(0.1, 0)},
     {"moving", "", "", "", "clear of the ground's range rate by more than notch_mps", OF_DETECTION(moving)},
+    {"scenery", "", "", "when it is not of buildings or clutter",
+     "what of these it is: more than half of its power, and more than entities make", .in = scenery_of_detection,
+     FIELD_OBJECT(detected_rows), .newer = true},
 };
 
 static const Field rcs_rows[] = {
@@ -300,6 +359,8 @@ static const Field radar_rows[] = {
      FIELD_EXACT},
     {"ground_cells", "", "", "", "scatterers of the ground within main lobe and window", OF_RADAR(ground_cells),
      FIELD_WITHIN(0, 0.001)},
+    {"scenery", "", "", "without buildings and clutter about the beam, and with radar.scenery false",
+     "their echoes (etc/reference/radar_built.md)", .in = scenery_of, FIELD_OBJECT(scenery_rows), .newer = true},
     {"plants", "", "", "", "plants within main lobe and window, which return from their crowns", OF_RADAR(crowns)},
     {"chaff", "", "", "", "clouds of chaff within beam and window", OF_RADAR(clouds)},
     {"rain_1_m", "m2/m3", "", "", "backscatter of the rain by its volume; 0: none falls", OF_RADAR(rain_1_m)},

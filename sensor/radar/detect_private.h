@@ -44,19 +44,28 @@ int detect_cfar(CfarHit *out, int most, const CfarConfig *config, const double *
 
 /* ---- detections --------------------------------------------------------------------------------- */
 
+/* What of a detection is scenery's. */
+typedef struct DetectedScenery {
+    double   share;  /* of its power that scenery makes by itself */
+    int      source; /* of RadarFrame.source, from 1: the brightest of that; 0: it is not of scenery */
+    uint64_t id;     /* of that: of the building's record, or the thing's */
+    uint8_t class;   /* SceneryClass; 0: built */
+} DetectedScenery;
+
 /* The detections of a map of range and Doppler: where, how fast, in which direction, how strong.
  *
  * Peaks of the sum channel over a threshold of constant false alarms. Range, Doppler and power between
  * cells by comparing the peak's two neighbours with the response to a point; directions by the ratios of the
  * difference channels to the sum in the peak's cell; cross-section by the radar equation, at the direction found. */
 typedef struct Detection {
-    int    row, column;
-    double range_m;             /* of the reference, plus */
-    double range_rate_mps;      /* likewise; folds over at half the interval of the map */
-    double cos_right, cos_down; /* direction, along the antenna's axes */
-    double snr;                 /* power over the noise about it, less 1 */
-    double rcs_m2;              /* if one echo from where it was found */
-    bool   moving;              /* clear of the ground's range rate in its direction (detect_moves); of the caller */
+    int             row, column;
+    double          range_m;             /* of the reference, plus */
+    double          range_rate_mps;      /* likewise; folds over at half the interval of the map */
+    double          cos_right, cos_down; /* direction, along the antenna's axes */
+    double          snr;                 /* power over the noise about it, less 1 */
+    double          rcs_m2;              /* if one echo from where it was found */
+    DetectedScenery scenery;             /* of the caller */
+    bool            moving; /* clear of the ground's range rate in its direction (detect_moves); of the caller */
 } Detection;
 
 /* What a map's reference stands for. */

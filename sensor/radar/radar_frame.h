@@ -97,6 +97,23 @@ typedef struct RadarTruth {
     RadarBounceTruth bounce;
 } RadarTruth;
 
+/* ---- scenery ---------------------------------------------------------------------------------------- */
+
+/* Something of scenery that may return: a record of buildings, or a thing. */
+typedef struct RadarSource {
+    uint64_t id;     /* of the building's record, or the object's */
+    int      object; /* of Scenery.object */
+    uint8_t class;   /* SceneryClass; CLUTTER_NONE: built */
+} RadarSource;
+
+typedef struct RadarSceneryCount {
+    int objects;                   /* near the rectangle that the main lobe lights; 0: there is none */
+    int pieces, by_ground, hidden; /* pieces of faces in sight; of them with an echo by the ground too; out of sight */
+    int things;                    /* of clutter, of which something is in sight */
+    int skipped;                   /* triangles out of beam and window */
+    int detections;                /* that are of it */
+} RadarSceneryCount;
+
 /* ---- the frame -------------------------------------------------------------------------------------- */
 
 /* What a measurement's time goes into, in order. */
@@ -131,12 +148,15 @@ typedef struct RadarFrame {
     int                targets;
     const RadarTruth  *target;
     ReceiverReport     receiver;
-    const RadarSector *scan;             /* NULL: the beam stares */
-    int    ground_cells, ground_hidden;  /* scatterers of the ground; how many of them relief or entities hide */
-    double rain_1_m;                     /* backscatter of rain by its volume, m2/m3 */
-    int    echoes;                       /* of entities, before any goes by way of the ground */
-    int    crowns, clouds;               /* plants, and clouds of chaff, within beam and window */
-    double spent_s, step_s[RADAR_STEPS]; /* wall clock */
+    const RadarSector *scan;         /* NULL: the beam stares */
+    int ground_cells, ground_hidden; /* scatterers of the ground; how many of them relief or entities hide */
+    RadarSceneryCount scenery;
+    int               sources; /* of scenery, near beam and window */
+    RadarSource      *source;
+    double            rain_1_m;                     /* backscatter of rain by its volume, m2/m3 */
+    int               echoes;                       /* of entities, before any goes by way of the ground */
+    int               crowns, clouds;               /* plants, and clouds of chaff, within beam and window */
+    double            spent_s, step_s[RADAR_STEPS]; /* wall clock */
 } RadarFrame;
 
 #endif

@@ -11,28 +11,6 @@ enum { fine_nice = 15, detections_most = 256, stream_noise = 0x3d000000 };
 static const double fog_top_m = 300;       /* above the ground; of fogs 100 .. 500 m deep: estimate */
 static const double no_reference_m = 1000; /* where there is neither an aim nor ground ahead */
 
-/* ---- points -------------------------------------------------------------------------------------- */
-
-RadarPoint *radar_points_room(RadarPoints *points, int more)
-{
-    if (more > INT32_MAX / 2 - points->count) return NULL;
-    const int need = points->count + more;
-    if (need > points->capacity) {
-        const int   capacity = need > 2 * points->capacity ? need : 2 * points->capacity;
-        RadarPoint *grown = realloc(points->point, (size_t)capacity * sizeof *grown);
-        if (!grown) return NULL;
-        points->point = grown;
-        points->capacity = capacity;
-    }
-    return points->point + points->count;
-}
-
-static void points_free(RadarPoints *points)
-{
-    free(points->point);
-    *points = (RadarPoints){0};
-}
-
 /* ---- what lasts -------------------------------------------------------------------------------- */
 
 static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
@@ -56,6 +34,12 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
     if (status == STATUS_OK)
         status =
             etc_path(path, sizeof path, "radar/ground.csv") ? ground_table_open(&r->mirror, path) : STATUS_BAD_VALUE;
+    if (status == STATUS_OK && config->scenery)
+        status =
+            etc_path(path, sizeof path, "radar/facades.csv") ? facade_table_open(&r->facades, path) : STATUS_BAD_VALUE;
+    if (status == STATUS_OK && config->scenery)
+        status =
+            etc_path(path, sizeof path, "radar/things.csv") ? thing_table_open(&r->things, path) : STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
     if (!etc_path(path, sizeof path, "radar/oxygen_lines.csv") ||
         !etc_path(water, sizeof water, "radar/water_lines.csv"))
@@ -81,6 +65,7 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     if (!r) return STATUS_NO_MEMORY;
     r->ground = config->ground;
     r->ground_bounce = config->ground_bounce;
+    r->scenery = config->scenery;
     r->wind_mps = config->wind_mps;
     r->seed = config->seed;
     r->chaff_dipoles = config->chaff_dipoles;
@@ -125,7 +110,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     echo_grid_destroy(r->echoes);
     centres_free(&r->centres);
     clutter_cache_destroy(r->drawn);
-    points_free(&r->points);
+    radar_points_free(&r->points);
     free(r->batch);
     free(r->sector_pulse);
     if (r->position) arena_destroy(r->position);
@@ -260,8 +245,7 @@ void shot_position(RadarShot *out, const RadarShot *shot, double azimuth_rad, do
     }
 }
 
-/* Makes the echo of a point in this position. False: this position leaves the point out. */
-static bool echo_of(Echo *e, const RadarShot *beam, const RadarPoint *q)
+bool shot_echo(Echo *e, const RadarShot *beam, const RadarPoint *q)
 {
     double p[3];
     Sight  sight;
@@ -302,7 +286,7 @@ static void echo_block(void *user, int worker, int task)
     (void)worker;
     int kept = 0;
     for (int i = first; i < end; i++) {
-        if (!echo_of(&e[kept], job->beam, &job->beam->radar->points.point[i])) continue;
+        if (!shot_echo(&e[kept], job->beam, &job->beam->radar->points.point[i])) continue;
         if (job->sum_alone)
             for (int c = CHANNEL_SUM + 1; c < interval_channels; c++) e[kept].amplitude[c] = 0;
         kept++;
@@ -390,7 +374,8 @@ static Status process(RadarShot *shot, const Interval *interval)
     if (f->detections_in_all < 0) return STATUS_NO_MEMORY;
     f->detections = f->detections_in_all < detections_most ? f->detections_in_all : detections_most;
     f->detection = detection;
-    return indicate_moving(shot, detection);
+    const Status status = shot_tell(shot, detection);
+    return status == STATUS_OK ? indicate_moving(shot, detection) : status;
 }
 
 /* Says when a step is over; *begun_s: when it began. */
@@ -414,6 +399,7 @@ static Status make(RadarShot *shot)
                                    .ground = scene->world->landscape,
                                    .frame = &scene->world->frame,
                                    .snapshot = scene->snapshot,
+                                   .skips_off = scene->skips_off,
                                    .eye_enu = {p[0], p[1], p[2]},
                                    .bend_per_m = scene->refraction ? world_bend(scene->world, REFRACTION_RADAR, p) : 0};
     Status                 status = visibility_create_seen(&visibility, &seen, shot->arena);
@@ -434,7 +420,9 @@ static Status make(RadarShot *shot)
     if (status == STATUS_OK) status = shot_targets(shot);
     note_step(shot, RADAR_TARGETS, &begun_s);
     if (shot->missing > 0) return status;
+    if (status == STATUS_OK) status = shot_scenery_open(shot);
     if (status == STATUS_OK && shot->radar->ground && scene->world->landscape) status = shot_ground(shot);
+    if (status == STATUS_OK) status = shot_scenery(shot);
     note_step(shot, RADAR_GROUND, &begun_s);
     if (status == STATUS_OK) status = shot_volume(shot);
     if (status == STATUS_OK) status = visibility_status(visibility);

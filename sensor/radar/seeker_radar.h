@@ -9,6 +9,8 @@
  *                as fewer echoes where the radar tells few of them apart (shot_targets.c)
  *     and the same by way of the ground near them, once and twice (ground_bounce.h)
  *     ground     by scatterers fixed to it (clutter.h), where relief and entities leave it in sight
+ *     scenery    walls and roofs by their faces, and by way of the ground before walls (render/scattering/built);
+ *                clutter by a few scatterers a thing of its shape's mean cross section
  *     plants     by scatterers in their crowns (foliage.h); what is behind or below is weakened, not hidden
  *     rain       by scatterers anew for each interval (volume_scatter.h)
  *     chaff      likewise; it weakens what is behind it
@@ -35,7 +37,8 @@ typedef struct SeekerRadarConfig {
     const char *catalog; /* path; its models are built anew, as fine as the wavelength needs */
     const char *isa;
     bool        ground;        /* scatterers of the ground and of plants */
-    bool        ground_bounce; /* the ground mirrors entities */
+    bool        ground_bounce; /* the ground mirrors entities, and walls */
+    bool        scenery;       /* echoes of buildings, works and clutter */
     double      scan_rad;      /* sector that the beam scans, about the boresight; 0: it stares */
     double      scan_step;     /* between its positions, over the beamwidth */
     double      warp_m;        /* unevenness of surfaces, rms (Warp of tubes.h) */
@@ -69,6 +72,7 @@ typedef struct RadarScene {
     uint32_t        number;                 /* of the frame: for its noise */
     bool            coarse;                 /* with coarse signatures, as it was when it was recorded */
     double          reach;                  /* factor on the angles beyond which echoes are left out; 0: 1 */
+    unsigned        skips_off;              /* 1 << Skip: no bit depends on it */
     bool            apart;                  /* each scattering centre is an echo of its own (slower, exact) */
     const float    *range_m; /* [view height][width]: of what each pixel shows, INFINITY: sky. NULL: no pixels */
     const uint32_t *entity;  /* likewise: snapshot index + 1, 0: none */

@@ -2,6 +2,7 @@
  * (RadarShot): what the files of this folder share.
  *
  *     seeker_radar.c   what lasts; the order of work in a shot; the echoes of all points, the receiver, detections
+ *     radar_points.c   memory of the points
  *     radar_coarse.c   coarse signatures, and what is prepared of them
  *     shot_sight.c     the way from the antenna to a place, and what stands before it
  *     shot_targets.c   points of entities
@@ -9,10 +10,13 @@
  *     shot_ground.c    points of the ground
  *     shot_bounce.c    echoes of entities by way of it
  *     shot_volume.c    points of rain, foliage and chaff, and what these weaken
+ *     shot_scenery.c   points of scenery, with its neighbours (shot_scenery_private.h)
  *     shot_sector.c    further positions of a beam that scans, and their pictures */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_PRIVATE_H
 #define SENSOR_RADAR_SEEKER_RADAR_PRIVATE_H
 
+#include "render/scattering/built/facade_table.h"
+#include "render/scattering/built/thing_table.h"
 #include "render/scattering/clutter/clutter.h"
 #include "render/scattering/clutter/foliage_fan.h"
 #include "render/scattering/clutter/leaf_cache.h"
@@ -38,7 +42,8 @@ typedef struct RadarPoint {
     double complex same, other;              /* scattered, m: received as transmitted, and in the other polarisation */
     double         share;                    /* of the amplitude that is in sight */
     double         widest, room_m;           /* counts so far off an axis (sine), and beyond the window */
-    bool           own; /* made for one position of the beam: place and path are those at its instant */
+    bool           own;    /* made for one position of the beam: place and path are those at its instant */
+    int32_t        source; /* of RadarFrame.source, from 1; 0: not of scenery */
 } RadarPoint;
 
 typedef struct RadarPoints {
@@ -48,6 +53,7 @@ typedef struct RadarPoints {
 
 /* Makes room for `more` points behind the last, which are not yet counted. NULL: out of memory. */
 RadarPoint *radar_points_room(RadarPoints *points, int more);
+void        radar_points_free(RadarPoints *points); /* accepts zeroes */
 
 /* ---- the radar and a shot -------------------------------------------------------------------------- */
 
@@ -72,6 +78,9 @@ struct SeekerRadar {
     ClutterTable      clutter;
     GroundTable       mirror; /* how the ground reflects */
     bool              ground_bounce;
+    bool              scenery; /* its echoes */
+    FacadeTable       facades;
+    ThingTable        things;
     ClutterGrid       cells;
     ClutterCache     *drawn; /* NULL without ground */
     ClutterBand       band;
@@ -115,7 +124,8 @@ typedef struct RadarShot {
     FoliageFan              *fan;                         /* foliage by direction; NULL: none is */
     const struct ChaffCloud *chaff;                       /* [chaff_count] */
     int                      chaff_count;
-    double                   base_m; /* height of the ground at the reference, ENU */
+    double                   base_m;  /* height of the ground at the reference, ENU */
+    struct ShotScenery      *scenery; /* NULL: none, or its echoes are off */
     Pool                    *pool;
     Arena                   *arena;
 } RadarShot;
@@ -235,8 +245,21 @@ Status shot_volume(RadarShot *shot);
 /* Adds the points of the rain in one position of the beam. */
 Status shot_rain(RadarShot *beam);
 
+/* ---- shot_scenery.c, shot_things.c, shot_told.c ------------------------------------------------------ */
+
+/* Finds the scenery near what is lit; called before the ground, whose classes it changes. */
+Status shot_scenery_open(RadarShot *shot);
+/* Adds its points. */
+Status shot_scenery(RadarShot *shot);
+/* The class of the ground at a place: where buildings stand as themselves, that of built ground is a road's. */
+uint8_t shot_bare_surface(const RadarShot *shot, uint8_t surface, double x_m, double y_m);
+/* Says of detections how much of each scenery made, and what. */
+Status shot_tell(RadarShot *shot, Detection *detection);
+
 /* ---- seeker_radar.c -------------------------------------------------------------------------------- */
 
+/* Makes the echo of a point in a position of the beam. False: this position leaves the point out. */
+bool shot_echo(Echo *out, const RadarShot *beam, const RadarPoint *point);
 /* Makes a position of the beam: turned about the antenna's down axis to the right, after_s from the frame's time. */
 void shot_position(RadarShot *out, const RadarShot *shot, double azimuth_rad, double after_s);
 /* Adds the echoes of all points, and of the rain in this position, to the radar's grid; sum_alone: to its sum channel

@@ -110,6 +110,13 @@ static void take_canopy_off(Ground *g, const Foliage *foliage)
     }
 }
 
+/* Where buildings stand as themselves, the ground between them is bare. */
+static void take_walls_off(Ground *g, const RadarShot *shot)
+{
+    for (int i = 0; i < g->count && shot->scenery; i++)
+        g->surface[i] = shot_bare_surface(shot, g->surface[i], g->p_enu[0][i], g->p_enu[1][i]);
+}
+
 static void scatter_block(void *user, int worker, int task)
 {
     static _Thread_local Ground           scatterers;
@@ -128,6 +135,7 @@ static void scatter_block(void *user, int worker, int task)
     job->kept[task] = g->count;
     landscape_surfaces(g->surface, shot->scene->world->landscape, g->count, g->p_enu[0], g->p_enu[1]);
     take_canopy_off(g, r->foliage);
+    take_walls_off(g, shot);
     const ClutterKind kind = {&r->cells, &r->clutter, r->band};
     clutter_cache_draw(scatterer, r->drawn, &kind, g->count, g->cell, g->surface);
     const double       *p = shot->scene->view->p_enu;

@@ -207,6 +207,7 @@ static void point_block(void *user, int worker, int task)
         q->widest = shot->widest + room_m / job->sight->range_m;
         q->room_m = room_m;
         q->own = shot->after_s != 0;
+        q->source = 0;
         memcpy(job->x[i], (double[merge_axes]){q->path_m, q->path_per_pulse_m, to.cos_right, to.cos_down},
                sizeof job->x[i]);
     }

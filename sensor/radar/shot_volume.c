@@ -57,6 +57,7 @@ static void place_point(RadarPoint *q, const RadarShot *shot, const VolumePoint 
     q->widest = widest;
     q->room_m = 0;
     q->own = shot->after_s != 0;
+    q->source = 0;
 }
 
 /* Those that neither relief nor entities hide, for the positions of the beam less than `widest` off (RadarPoint);

@@ -124,7 +124,9 @@ enum { config_paths_size = 4096 };
         "a .csv with the columns of etc/radars.csv, whose rows radar.preset names in place of those") \
     ROW(BOOL, radar., ground, true, "that radar's echoes of ground and plants; with a preset") \
     ROW(BOOL, radar., ground_bounce, true, \
-        "reflections of that radar's waves by the ground near entities, on the way in and out; with a preset") \
+        "reflections of that radar's waves by the ground near entities and before walls; with a preset") \
+    ROW(BOOL, radar., scenery, true, \
+        "that radar's echoes of buildings, works and clutter, where there are any; with a preset") \
     /* of 5.1 million fibres in a cartridge, cut for several bands */ \
     ROW(DOUBLE, radar., chaff_dipoles, 1e6, 0, 1e10, "", \
         "dipoles in resonance with that radar in a cloud of chaff (type 8.*.*.1 or .3); 0: chaff is not seen") \

@@ -9,7 +9,7 @@ static Status bench_stability_render(Bench *bench)
         bench_stability_parts,   bench_stability_ground,  bench_stability_light,        bench_stability_sun,
         bench_stability_air,     bench_stability_horizon, bench_stability_gloss,        bench_stability_pictures,
         bench_stability_crowd,   bench_stability_plants,  bench_stability_plant_tables, bench_stability_heat,
-        bench_stability_network, bench_stability_radar,   bench_stability_scenery};
+        bench_stability_network, bench_stability_radar,   bench_stability_built,        bench_stability_scenery};
     Status failed = STATUS_OK;
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         const Status status = part[k](bench);

@@ -64,6 +64,7 @@ Status bench_stability_scenery(Bench *bench); /* buildings and clutter */
 Status bench_stability_heat(Bench *bench);    /* the ground's heat */
 Status bench_stability_network(Bench *bench); /* stability_heat.c: networks of thermal nodes */
 Status bench_stability_radar(Bench *bench);   /* the field of a radar target */
+Status bench_stability_built(Bench *bench);   /* walls to a radar */
 
 /* ---- sensor -------------------------------------------------------------------------------------- */
 

@@ -12,6 +12,8 @@
 #include "render/heat/vehicle_heat.h"
 #include "render/heat/part_table.h"
 #include "render/materials/materials.h"
+#include "render/scattering/built/facade_table.h"
+#include "render/scattering/built/thing_table.h"
 #include "render/scattering/paths/attenuation.h"
 #include "render/scattering/signatures/given_signature.h"
 #include "render/scattering/clutter/clutter_table_private.h"
@@ -41,7 +43,9 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
                                        "radar/oxygen_lines.csv",
                                        "radar/water_lines.csv",
                                        "radar/clutter.csv",
-                                       "radar/ground.csv"};
+                                       "radar/ground.csv",
+                                       "radar/facades.csv",
+                                       "radar/things.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
     switch (index % (names + 7)) {
@@ -224,6 +228,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                 ground_reflection(&te, &tm, &of, 700, 0.2);
                 if (!(cabs(te) <= 1 + 1e-9 && cabs(tm) <= 1 + 1e-9)) abort();
             }
+        static FacadeTable facades;
+        const RadarSurface wall = {.kind = RADAR_HALF_SPACE, .eps = 4, .rough_m = 1e-3};
+        if (table_column(&table, "uneven_m") >= 0 && facade_table_open(&facades, path) == STATUS_OK)
+            for (int i = 0; i < facades.count; i++) {
+                const double sigma0 = facade_sigma0(&facades.row[i], CLUTTER_KA, &wall, 700, 0.7);
+                if (!(sigma0 >= 0 && sigma0 <= 4) || !isfinite(facade_height(&facades.row[i], 1, 9.5, -7))) abort();
+            }
+        static ThingTable things;
+        if (table_column(&table, "dbsm_180") >= 0 && thing_table_open(&things, path) == STATUS_OK)
+            for (int i = 0; i < things.count; i++)
+                if (!(thing_rcs_m2(&things.row[i], CLUTTER_W, (const double[3]){-1, 0, 0}) > 0)) abort();
         table_close(&table);
     }
     close(file);

@@ -11,6 +11,8 @@
 #include "render/heat/ground_column_private.h"
 #include "render/heat/part_table.h"
 #include "render/materials/materials.h"
+#include "render/scattering/built/facade_table.h"
+#include "render/scattering/built/thing_table.h"
 #include "render/scattering/clutter/clutter_table_private.h"
 #include "render/scattering/paths/attenuation.h"
 #include "render/scattering/paths/ground_bounce.h"
@@ -75,6 +77,16 @@ static Status read_clutter(const char *path)
 {
     static ClutterTable t;
     return clutter_table_open(&t, path);
+}
+static Status read_facades(const char *path)
+{
+    static FacadeTable t;
+    return facade_table_open(&t, path);
+}
+static Status read_things(const char *path)
+{
+    static ThingTable t;
+    return thing_table_open(&t, path);
 }
 static Status read_oxygen(const char *path)
 {
@@ -202,6 +214,8 @@ static const struct Reader {
     {"catalog.csv", read_catalog, NULL},
     {"radar/clutter.csv", read_clutter, NULL},
     {"radar/ground.csv", read_ground, NULL},
+    {"radar/facades.csv", read_facades, NULL},
+    {"radar/things.csv", read_things, NULL},
     {"radar/materials.csv", read_radar_materials, NULL},
     {"radar/oxygen_lines.csv", read_oxygen, NULL},
     {"radar/water_lines.csv", read_water, NULL},

@@ -93,6 +93,7 @@ run replay "$tmp/two.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
 regress_case village # with buildings and clutter
 "$pitviper" replay "$tmp/village.pcap" "${case_options[@]}" --out "$tmp/village" --threads 1 --only 0 --bands lwir --no-png \
+    --set observer.range_m=300 --set observer.height_m=90 --set radar.preset=seeker_35 --set radar.given="$tmp/given.csv" \
     --coco --set publish.coco_clutter=true >"$tmp/stdout" 2>"$tmp/stderr"
 check "products with scenery" [ $? = 0 ] || cat "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"

@@ -9,7 +9,7 @@ data=${PITVIPER_DATA:-../shared/data}
 if [ -d "$data" ]; then PITVIPER_DATA=$(realpath "$data") && export PITVIPER_DATA; fi
 
 heat=(day departed exhaust halt) # long warmed up
-radar=(recorded seeker woods)    # a radar's, with plants, or of another simulator
+radar=(recorded seeker walls woods) # a radar's, with plants, or of another simulator
 part=${PITVIPER_SUITE_PART:-rest}
 cases=()
 for folder in tests/regress/*/; do
