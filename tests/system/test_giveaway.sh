@@ -21,7 +21,7 @@ Y
     --host observer --from +2 --to +39 --planes entity,part,material,instance --set exercise.aim=1:3001:13 --set observer.rate_dps=9 \
     --set observer.range_m=1200 --set sensor.preset=staring_mwir --set exercise.local_solar=2026-06-21T02:00:00 \
     --set terrain.woods_half_m=300 --set terrain.woods_far_m=0 --set heat.facets=3 --set heat.step_s=3600 --set heat.shadow_m=64 \
-    --set heat.vehicle_step_s=600 --set terrain.detail=off || fail "the views"
+    --set heat.vehicle_step_s=600 --set terrain.detail=off --set terrain.buildings=off || fail "the views"
 views() { # views CLUTTER: what the hottest pixel of eight views about a tank whose engine idles lies on
     local folder
     folder=$(grep -F "\"terrain.clutter\":\"$1\"" "$tmp/views/manifest.jsonl" | grep -oE '"folder":"[^"]*"' | cut -d'"' -f4)
