@@ -161,7 +161,7 @@ static bool clutter_is_valid(const Check *c)
     char path[1024];
     return (clutter_table_path(path, sizeof path, c->config->terrain.clutter_table) &&
             scenery_clutter_check(path) == STATUS_OK) ||
-           report(c, "terrain.clutter_table", "countryside, rear_area, or a CSV as etc/clutter.csv");
+           report(c, "terrain.clutter_table", "rear_area, countryside, or a CSV as etc/clutter.csv");
 }
 
 static bool atmosphere_is_valid(const Check *c)

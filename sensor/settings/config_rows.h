@@ -333,9 +333,9 @@ enum { config_paths_size = 4096 };
         "table of trees (CSV): lat and lon, or x_m and y_m; kind, height_m, marked; empty: none") \
     ROW(DOUBLE, terrain., clutter, 1, 0, 20, "", \
         "civil vehicles, machines, animals, fires and rocks, by the densities of clutter_table times this; 0: none") \
-    ROW(NAME_OR_PATH, terrain., clutter_table, "countryside", 1024, \
-        "what clutter there is: countryside, rear_area (vehicles, generators, kitchens, fires about troops) or a CSV as " \
-        "etc/clutter.csv") \
+    ROW(NAME_OR_PATH, terrain., clutter_table, "rear_area", 1024, \
+        "what clutter there is: rear_area (vehicles, generators, machines, stores, fires about troops), countryside or a " \
+        "CSV as etc/clutter.csv") \
     ROW(SWITCH, terrain., woods, true, "on|off", \
         "trees, bushes, hedges and low plants, by canopy layers, marked trunks or surface classes; off: bare " \
         "ground") \

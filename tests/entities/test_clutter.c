@@ -360,10 +360,11 @@ static void tables_by_name(void **state)
     log_suppress(false);
 }
 
-/* The rear area has many times as many things that may be hot as the countryside, on the same ground. */
+/* The rear area has many times as many things that may be hot as the countryside, on the same ground; what works under
+ * load there or burns openly is of four kinds or more, none of them nearly half, and hardly any of it is a fire. */
 static void rear_area_is_warm(void **state)
 {
-    int hot[2] = {0};
+    int hot[2] = {0}, kind[CLUTTER_CLASSES] = {0}, all = 0, kinds = 0;
     (void)state;
     for (int k = 0; k < 2; k++) {
         ClutterConfig c = about(&plain, 2000);
@@ -372,11 +373,21 @@ static void rear_area_is_warm(void **state)
         for (int n = 0; n < s.objects; n++) {
             const SceneryState *of = &s.state[s.object[n].state];
             hot[k] += (of->drives.engine > 0 && !(of->stood_s > 0)) || of->drives.burning > 0;
+            if (k == 0 || s.object[n].class == CLUTTER_HEAP || of->drives.speed_mps > 0) continue;
+            kind[s.object[n].class] += (of->drives.engine > 0.8f && !(of->stood_s > 0)) || of->drives.burning > 0;
         }
         scenery_free(&s);
     }
     print_message("engines that run and fires on 16 km2: countryside %d, rear area %d\n", hot[0], hot[1]);
     CHECK(hot[0] > 0 && hot[1] > 4 * hot[0]);
+    for (int class = 0; class < CLUTTER_CLASSES; class ++) all += kind[class];
+    for (int class = 0; class < CLUTTER_CLASSES; class ++) {
+        if (kind[class] > 0)
+            print_message("of %d: %s %d\n", all, scenery_class_name((SceneryClass) class), kind[class]);
+        CHECK(kind[class] < 0.45 * all);
+        kinds += kind[class] > 0.05 * all;
+    }
+    CHECK(kinds >= 4 && kind[CLUTTER_FIRE] > 0 && kind[CLUTTER_FIRE] < 0.05 * all);
 }
 
 int main(void)
