@@ -1,0 +1,14 @@
+/* sensor/node/cigi/cigi_answer.h: answers to a CIGI host's requests, from the ground. */
+#ifndef SENSOR_NODE_CIGI_CIGI_ANSWER_H
+#define SENSOR_NODE_CIGI_CIGI_ANSWER_H
+
+#include "sensor/node/cigi/cigi_node.h"
+
+/* The answer to HAT/HOT, Line of Sight and Sensor Control packets. Heights of terrain are above the ellipsoid; beyond
+ * the ground, and for an entity that was not reported, an answer is not valid. A line of sight is never valid, and a
+ * sensor is always searching: this node does not trace rays for a host, and has no tracker. False: nothing is to be
+ * said. */
+bool cigi_answer(CigiPacket *out, const CigiPacket *request, const CigiScene *scene, const CigiGround *ground,
+                 uint32_t ig_frame);
+
+#endif
