@@ -23,9 +23,10 @@ class Lost(Exception):
 
 
 class Host:
-    def __init__(self, port, order='>'):
+    def __init__(self, port, order='>', own=0):
         self.order = order
         self.udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.udp.bind(('127.0.0.1', own))
         self.udp.connect(('127.0.0.1', port))
         self.udp.settimeout(60)  # which only a hang reaches
         self.frame = 0
