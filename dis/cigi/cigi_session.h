@@ -12,7 +12,7 @@
 #ifndef DIS_CIGI_CIGI_SESSION_H
 #define DIS_CIGI_CIGI_SESSION_H
 
-#include "dis/cigi/cigi.h"
+#include "dis/cigi/cigi_datagram.h"
 
 enum { cigi_datagram_octets = 1472 }; /* what Ethernet carries unfragmented over UDP and IPv4 */
 

@@ -379,7 +379,7 @@ static int replay(const Options *options, MadeWorld *made)
     char        log_name[4096];
     snprintf(log_name, sizeof log_name, "%s", run.options.log);
     run.log_name = basename(log_name);
-    Status failed = STATUS_OK, status = lockstep_begin(&lockstep, &run);
+    Status failed = STATUS_OK, status = lockstep_begin(&lockstep, &run, NULL);
     if (status == STATUS_OK) status = prepare(&run, host);
     if (status == STATUS_OK) status = open_sending(&sending, &run, &run.made->log);
     if (status == STATUS_OK) status = open_folders(&run, host);

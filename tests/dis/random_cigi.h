@@ -4,6 +4,7 @@
 
 #include "tests/dis/random_pdu.h"
 
+#include "dis/cigi/cigi_datagram.h"
 #include "dis/cigi/cigi_fields.h"
 
 static const uint8_t cigi_ids[] = {1, 2, 16, 17, 21, 24, 25, 26, 101, 102, 103, 104, 105, 106, 107};

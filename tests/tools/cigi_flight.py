@@ -1,9 +1,11 @@
-"""tests/tools/cigi_flight.py PITVIPER LOG OUT [--rough] [OPTION ...]: a CIGI host flies an eye through a replay of LOG, frame by
-frame, and judges what comes: that a frame's file is there when its Start of Frame comes, time, place and attitude of each
-frame in OUT/truth.jsonl against pyproj and scipy, and heights above ground against the range of the frame's own middle. With
---rough it stops between frames, repeats itself, and loses Start of Frame: the frames are the same."""
+"""tests/tools/cigi_flight.py PITVIPER LOG OUT [--rough] [OPTION ...]: a CIGI host flies an eye through a replay of LOG, or with
+`live` as LOG through a live exercise, frame by frame, and judges what comes: that a frame's file is there when its Start
+of Frame comes (of a replay), time, place and attitude of each frame in OUT/truth.jsonl against pyproj and scipy, and
+heights above ground against the range of the frame's own middle. With --rough it stops between frames, repeats itself,
+and loses Start of Frame: the frames are the same."""
 import json
 import os
+import signal
 import socket
 import struct
 import subprocess
@@ -71,7 +73,7 @@ def height_of(place):
     return pyproj.Transformer.from_crs(4978, 4979).transform(*place)[2]
 
 
-def fly(host, out, rough):
+def fly(host, out, rough, live):
     answers = {}
     host.heartbeat(1)
     host.step(0, mode=STANDBY)
@@ -96,7 +98,7 @@ def fly(host, out, rough):
         sof, rest = host.next()
         if (sof['stamp'], sof['host_frame'], sof['mode']) != (stamp(k), host.frame, OPERATE):
             host.fail(f'Start of Frame after frame {k}: {sof}')
-        if not os.path.exists(f'{out}/frames/lwir/{k:06d}.exr'):
+        if not live and not os.path.exists(f'{out}/frames/lwir/{k:06d}.exr'):
             host.fail(f'Start of Frame {sof["ig_frame"]} came before the files of frame {k}')
         if rough:
             time.sleep(0.4)
@@ -107,19 +109,21 @@ def fly(host, out, rough):
             answers[number, which] = (data[4:8], *struct.unpack(order + 'dd', (data[8:] + bytes(16))[:16]))
     host.step(stamp(0), mode=OPERATE)  # its time goes back: answered, and no frame
     host.next()
-    host.step(round(1360 * TICKS))  # behind exercise.to_s: the end
+    if not live:
+        host.step(round(1360 * TICKS))  # behind exercise.to_s: the end
     return answers
 
 
-def judge_frames(host, out):
+def judge_frames(host, out, live):
     lines = [json.loads(line) for line in open(f'{out}/truth.jsonl', encoding='utf-8')]
     if [line['frame'] for line in lines] != list(range(FRAMES)):
         host.fail(f'frames {[line["frame"] for line in lines]}')
     before = None
+    shift_s = lines[0]['time_s'] - stamp(0) / TICKS if live else 0  # a live exercise has a time of its own
     for k, line in enumerate(lines):
         place, cam = wanted(k)
         got = numpy.array(line['host']['ecef_m'])
-        if abs(line['time_s'] - stamp(k) / TICKS) > 1e-9:
+        if abs(line['time_s'] - shift_s - stamp(k) / TICKS) > 1e-9:
             host.fail(f'frame {k} at {line["time_s"]} s')
         if numpy.abs(got - place).max() > 1e-6:
             host.fail(f'frame {k}: eye at {got}, not {place}')
@@ -160,19 +164,23 @@ def judge_heights(host, out, answers):
 def main():
     rough = '--rough' in sys.argv
     program, log, out, *options = [w for w in sys.argv[1:] if w != '--rough']
+    live = log == 'live'
     ours, theirs = free_port(), free_port()
     host = Host(theirs, own=ours)
-    with subprocess.Popen([program, 'replay', log, '--out', out, '--cigi', f'127.0.0.1:{ours}', '--set',
-                           f'exercise.cigi_port={theirs}', '--set', f'exercise.cigi_view={VIEW}', '--to', '1355',
-                           *options]) as node:
+    command = [program, 'run'] if live else [program, 'replay', log, '--to', '1355']
+    command += ['--out', out, '--cigi', f'127.0.0.1:{ours}', '--set', f'exercise.cigi_port={theirs}', '--set',
+                f'exercise.cigi_view={VIEW}', *options]
+    with subprocess.Popen(command) as node:
         try:
-            answers = fly(host, out, rough)
+            answers = fly(host, out, rough, live)
         except cigi_host.Lost:
             node.kill()
             return 1
+        if live:
+            node.send_signal(signal.SIGINT)
         if node.wait(60) != 0:
             host.fail(f'pitviper ended with {node.returncode}')
-    judge_frames(host, out)
+    judge_frames(host, out, live)
     judge_heights(host, out, answers)
     print(f'{host.failures} failures')
     return bool(host.failures)

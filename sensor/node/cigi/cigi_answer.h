@@ -2,7 +2,15 @@
 #ifndef SENSOR_NODE_CIGI_CIGI_ANSWER_H
 #define SENSOR_NODE_CIGI_CIGI_ANSWER_H
 
-#include "sensor/node/cigi/cigi_node.h"
+#include "sensor/node/cigi/cigi_scene.h"
+#include "terrain/earth/geodesy.h"
+#include "terrain/ground/landscape.h"
+
+/* The ground that answers are taken from. landscape NULL: there is none. */
+typedef struct CigiGround {
+    const Landscape  *landscape;
+    const LocalFrame *frame;
+} CigiGround;
 
 /* The answer to HAT/HOT, Line of Sight and Sensor Control packets. Heights of terrain are above the ellipsoid; beyond
  * the ground, and for an entity that was not reported, an answer is not valid. A line of sight is never valid, and a

@@ -1,8 +1,6 @@
 /* sensor/node/cigi/cigi_node.c: datagrams of a node's CIGI host: into its lockstep, its scene and its answers. */
 #include "sensor/node/cigi/cigi_node.h"
 
-#include "sensor/node/cigi/cigi_answer.h"
-
 #include <inttypes.h>
 #include <stdlib.h>
 

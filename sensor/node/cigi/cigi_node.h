@@ -4,22 +4,14 @@
 
 #include "dis/cigi/cigi_link.h"
 #include "dis/cigi/cigi_session.h"
-#include "sensor/node/cigi/cigi_scene.h"
+#include "sensor/node/cigi/cigi_answer.h"
 #include "sensor/settings/config.h"
-#include "terrain/earth/geodesy.h"
-#include "terrain/ground/landscape.h"
 
 /* Where the eye was at a frame of the host. */
 typedef struct CigiFix {
     double t_s; /* exercise time */
     double p_ecef[3], r_ecef_from_view[9];
 } CigiFix;
-
-/* The ground that answers are taken from. landscape NULL: there is none. */
-typedef struct CigiGround {
-    const Landscape  *landscape;
-    const LocalFrame *frame;
-} CigiGround;
 
 enum { cigi_requests_most = 64 };
 

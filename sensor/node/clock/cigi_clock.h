@@ -4,7 +4,7 @@
 #define SENSOR_NODE_CLOCK_CIGI_CLOCK_H
 
 #include "sensor/node/cigi/cigi_node.h"
-#include "sensor/node/clock/frame_clock.h"
+#include "sensor/node/clock/live_clock.h"
 
 typedef struct CigiClock {
     FrameClock clock;
@@ -13,9 +13,14 @@ typedef struct CigiClock {
     double     from_s, to_s; /* exercise time; frames before are answered without a picture; a frame after ends it */
     double     last_s;       /* of the last frame */
     int        made;         /* frames */
+    /* With a live exercise, whose time goes on by itself: the host's first frame, and its first after a restart, is at
+     * the exercise time that arrives just then, and the others as long after it as its time stamps say. */
+    const LiveClock *live;     /* NULL: exercise time is the host's time stamp; the caller's, it has a player */
+    double           offset_s; /* exercise time less the host's */
+    uint64_t         restarts; /* of the host, by the last frame */
 } CigiClock;
 
-/* A clock that waits for node, ground, from_s and to_s. */
-CigiClock cigi_clock(void);
+/* A clock that waits for node, ground, from_s and to_s. live: NULL: with a recording. */
+CigiClock cigi_clock(const LiveClock *live);
 
 #endif

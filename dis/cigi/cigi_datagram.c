@@ -1,4 +1,7 @@
-/* dis/cigi/cigi.c: the packets of a CIGI datagram, one after the other by their sizes; and one packet written. */
+/* dis/cigi/cigi_datagram.c: the packets of a CIGI datagram, one after the other by their sizes; and one packet written.
+ */
+#include "dis/cigi/cigi_datagram.h"
+
 #include "dis/cigi/cigi_fields.h"
 
 const char *cigi_drop_cause(CigiDrop drop)

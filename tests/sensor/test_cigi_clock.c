@@ -1,0 +1,211 @@
+/* tests/sensor/test_cigi_clock.c: the clock of a CIGI host, this test being the host on loopback: frame times and ends
+ * against lists by hand, heights on ground that is a plane. */
+#include "tests/check.h"
+#include "dis/cigi/cigi_datagram.h"
+#include "sensor/node/clock/cigi_clock.h"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+
+static int       udp;
+static CigiClock c;
+static uint32_t  frame_number;
+
+static int open_port(int *number)
+{
+    struct sockaddr_in here = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    socklen_t          size = sizeof here;
+    const int          opened = socket(AF_INET, SOCK_DGRAM, 0);
+    CHECK(opened >= 0 && bind(opened, (struct sockaddr *)&here, size) == 0);
+    CHECK(getsockname(opened, (struct sockaddr *)&here, &size) == 0);
+    *number = ntohs(here.sin_port);
+    return opened;
+}
+
+static int node_port;
+
+static void begin(double from_s, double to_s)
+{
+    Config config = config_default();
+    int    host_port;
+    udp = open_port(&host_port);
+    close(open_port(&node_port));
+    snprintf(config.exercise.cigi, sizeof config.exercise.cigi, "127.0.0.1:%d", host_port);
+    config.exercise.cigi_port = node_port;
+    config.exercise.cigi_view = 2;
+    c = cigi_clock(NULL);
+    CHECK(cigi_node_open(&c.node, &config) == STATUS_OK);
+    c.from_s = from_s;
+    c.to_s = to_s;
+    frame_number = 0;
+}
+
+static void end(void)
+{
+    cigi_node_close(c.node);
+    close(udp);
+}
+
+/* The host's next datagram: IG Control and what is given, 0 or 1 packet. */
+static void say_as(uint8_t mode, double t_s, const CigiPacket *more)
+{
+    const struct sockaddr_in to = {
+        .sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK), .sin_port = htons((uint16_t)node_port)};
+    const CigiPacket control = {.id = cigi_ig_control,
+                                .of.ig_control = {.mode = mode,
+                                                  .timestamp_valid = true,
+                                                  .host_frame = ++frame_number,
+                                                  .timestamp = (uint32_t)llround(t_s * cigi_ticks_per_s)}};
+    uint8_t          out[128];
+    size_t           octets = cigi_write(out, sizeof out, &control, CIGI_LITTLE_ENDIAN);
+    if (more) octets += cigi_write(out + octets, sizeof out - octets, more, CIGI_LITTLE_ENDIAN);
+    CHECK(sendto(udp, out, octets, 0, (const struct sockaddr *)&to, sizeof to) == (ssize_t)octets);
+}
+static void say(double t_s, const CigiPacket *more) { say_as(cigi_mode_operate, t_s, more); }
+
+static const CigiPacket eye = {.id = cigi_entity_control, .of.entity_control = {.state = 1, .p = {0, 0, 500}}};
+
+/* The clock's answer once there is one other than that it is early and the host has been heard; `early`: it may be. */
+static ClockAnswer wait_for(FrameTime *frame, bool early)
+{
+    const uint64_t heard = c.node->session.counters.datagrams;
+    for (;;) {
+        CHECK(c.clock.next(frame, &c.clock) == CLOCK_DUE);
+        const ClockAnswer answer = c.clock.wait(frame, &c.clock);
+        if (answer != CLOCK_EARLY || (early && c.node->session.counters.datagrams > heard)) return answer;
+    }
+}
+
+/* The number of the Start of Frame that comes next; packet: the first packet behind it, id 0: none. */
+static uint32_t heartbeat(CigiPacket *behind)
+{
+    uint8_t       in[2048];
+    CigiCounters  counters = {0};
+    CigiReader    reader;
+    CigiPacket    start;
+    const ssize_t octets = recv(udp, in, sizeof in, 0);
+    CHECK(octets > 0);
+    CHECK(cigi_open(&reader, &start, &counters, in, (size_t)octets, CIGI_FROM_IG) == STATUS_OK);
+    if (behind && !cigi_next(behind, &reader, &counters)) behind->id = 0;
+    return start.of.start_of_frame.ig_frame;
+}
+
+static void frames_are_those_of_the_host(void **state)
+{
+    (void)state;
+    FrameTime frame;
+    begin(10, 20);
+    say_as(cigi_mode_standby, 0, NULL);
+    CHECK(wait_for(&frame, true) == CLOCK_EARLY);
+    CHECK(heartbeat(NULL) == 1 && heartbeat(NULL) == 2);
+    say(9, NULL); /* it has not said where the eye is */
+    CHECK(wait_for(&frame, true) == CLOCK_EARLY && heartbeat(NULL) == 3);
+    say(9.99, &eye); /* before the first frame that there is */
+    CHECK(wait_for(&frame, true) == CLOCK_EARLY && heartbeat(NULL) == 4);
+    static const double times_s[] = {10, 10.00001, 10.5, 10.5, 19.99999, 20};
+    for (int i = 0; i < 6; i++) {
+        say(times_s[i], &eye);
+        CHECK(wait_for(&frame, false) == CLOCK_DUE && frame.number == i && frame.late_s == 0 && frame.dropped == 0);
+        CHECK_NEAR(frame.t_s, times_s[i], 1e-12);
+        CHECK(recv(udp, &(char){0}, 1, MSG_DONTWAIT) < 0); /* nothing is said before the frame is made */
+        c.clock.done(&c.clock, &frame);
+        CHECK(heartbeat(NULL) == 5 + (uint32_t)i);
+    }
+    say(20.00001, &eye);
+    CHECK(wait_for(&frame, false) == CLOCK_END);
+    end();
+}
+
+static void a_host_that_begins_anew_before_the_last_frame_ends_it(void **state)
+{
+    (void)state;
+    FrameTime frame;
+    for (int later = 0; later < 2; later++) {
+        begin(0, INFINITY);
+        frame_number = 500;
+        say(8, &eye);
+        CHECK(wait_for(&frame, false) == CLOCK_DUE);
+        c.clock.done(&c.clock, &frame);
+        frame_number = 0;
+        say_as(cigi_mode_standby, 0, NULL);
+        CHECK(wait_for(&frame, true) == CLOCK_EARLY);
+        say(later ? 8.5 : 1, &eye);
+        CHECK(wait_for(&frame, false) == (later ? CLOCK_DUE : CLOCK_END));
+        if (later) CHECK(frame.number == 1 && frame.t_s == 8.5);
+        end();
+    }
+}
+
+/* One answer to a request, behind the next Start of Frame. */
+static void ask(CigiPacket *answer, const CigiPacket *request)
+{
+    FrameTime frame;
+    say(frame_number, request);
+    CHECK(wait_for(&frame, false) == CLOCK_DUE);
+    c.clock.done(&c.clock, &frame);
+    while (heartbeat(answer) < frame_number + 1) {
+    }
+}
+
+/* Posts of height 0 at the tangent plane of latitude and longitude 0: the plane x = 6378137 of ECEF. A place l east of
+ * it on the equator has its surface at a / cos l - a above the ellipsoid, and the normal leans by l to the west. */
+static void heights_are_those_of_the_ground(void **state)
+{
+    (void)state;
+    const double                            a_m = 6378137;
+    FrameTime                               frame;
+    CigiPacket                              answer;
+    Landscape                               landscape;
+    LocalFrame                              here;
+    LandscapeConfig                         config = landscape_default_config();
+    CigiPacket                              request = {.id = cigi_hat_hot_request,
+                                                       .of.hat_hot_request = {.id = 31, .type = cigi_request_extended, .p = {0, 0.05, 500}}};
+    CigiHatHotRequest *const                r = &request.of.hat_hot_request;
+    const CigiHatHotExtendedResponse *const x = &answer.of.hat_hot_extended_response;
+    CHECK(local_frame_at(&here, &(Geodetic){0}) == STATUS_OK);
+    CHECK(landscape_create(&landscape, &config, &here, NULL, 0, NULL, 0) == STATUS_OK);
+    ElevationGrid grid = {.nx = 2001, .ny = 101, .x0_m = -10000, .y0_m = -500, .spacing_m = 10, .step_m = 0.01};
+    elevation_destroy(&landscape.elevation);
+    CHECK(elevation_level_create(&landscape.elevation, 0, &grid) == STATUS_OK);
+    elevation_build_pyramids(&landscape.elevation);
+
+    begin(0, INFINITY);
+    say(1, &eye);
+    CHECK(wait_for(&frame, false) == CLOCK_DUE && heartbeat(NULL) == 1);
+    c.clock.done(&c.clock, &frame);
+    ask(&answer, &request);
+    CHECK(answer.id == cigi_hat_hot_extended_response && x->id == 31 && !x->valid); /* there is no ground */
+    CHECK(x->host_frame == 2);
+    c.ground = (CigiGround){&landscape, &here};
+    for (int k = 0; k < 4; k++) {
+        const double l_deg = 0.02 * k, hot_m = a_m / cos(l_deg * rad_per_deg) - a_m;
+        r->p[1] = l_deg;
+        ask(&answer, &request);
+        CHECK(x->valid);
+        CHECK_NEAR(x->hot_m, hot_m, 1e-6);
+        CHECK_NEAR(x->hat_m, 500 - hot_m, 1e-6);
+        CHECK_NEAR(x->normal_elevation_deg, 90 - l_deg, 1e-5);
+        if (k) CHECK_NEAR(x->normal_azimuth_deg, -90, 1e-3);
+        CHECK(x->material == (uint32_t)landscape_surface(&landscape, a_m * tan(l_deg * rad_per_deg), 0));
+    }
+    r->p[1] = 0.1; /* 11 km: beyond the posts */
+    ask(&answer, &request);
+    CHECK(!x->valid && x->hot_m == 0);
+    r->type = cigi_request_hot;
+    r->p[1] = 0.02;
+    ask(&answer, &request);
+    CHECK(answer.id == cigi_hat_hot_response && answer.of.hat_hot_response.valid && answer.of.hat_hot_response.hot);
+    CHECK_NEAR(answer.of.hat_hot_response.height_m, a_m / cos(0.02 * rad_per_deg) - a_m, 1e-6);
+    end();
+    landscape_destroy(&landscape);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_are_those_of_the_host),
+        cmocka_unit_test(a_host_that_begins_anew_before_the_last_frame_ends_it),
+        cmocka_unit_test(heights_are_those_of_the_ground),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
