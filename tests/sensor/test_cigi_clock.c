@@ -147,28 +147,33 @@ static void ask(CigiPacket *answer, const CigiPacket *request)
     }
 }
 
-/* Posts of height 0 at the tangent plane of latitude and longitude 0: the plane x = 6378137 of ECEF. A place l east of
- * it on the equator has its surface at a / cos l - a above the ellipsoid, and the normal leans by l to the west. */
+/* Posts of height 0 at the tangent plane of latitude and longitude 0: the plane x = 6378137 of ECEF. A place l east of it
+ * on the equator has its surface at a / cos l - a above the ellipsoid, and the normal leans by l to the west. */
+static Landscape  landscape;
+static LocalFrame here;
+
+static void plane(void)
+{
+    LandscapeConfig     config = landscape_default_config();
+    const ElevationGrid grid = {.nx = 2001, .ny = 201, .x0_m = -10000, .y0_m = -1000, .spacing_m = 10, .step_m = 0.01};
+    CHECK(local_frame_at(&here, &(Geodetic){0}) == STATUS_OK);
+    CHECK(landscape_create(&landscape, &config, &here, NULL, 0, NULL, 0) == STATUS_OK);
+    elevation_destroy(&landscape.elevation);
+    CHECK(elevation_level_create(&landscape.elevation, 0, &grid) == STATUS_OK);
+    elevation_build_pyramids(&landscape.elevation);
+}
+
 static void heights_are_those_of_the_ground(void **state)
 {
     (void)state;
     const double                            a_m = 6378137;
     FrameTime                               frame;
     CigiPacket                              answer;
-    Landscape                               landscape;
-    LocalFrame                              here;
-    LandscapeConfig                         config = landscape_default_config();
     CigiPacket                              request = {.id = cigi_hat_hot_request,
                                                        .of.hat_hot_request = {.id = 31, .type = cigi_request_extended, .p = {0, 0.05, 500}}};
     CigiHatHotRequest *const                r = &request.of.hat_hot_request;
     const CigiHatHotExtendedResponse *const x = &answer.of.hat_hot_extended_response;
-    CHECK(local_frame_at(&here, &(Geodetic){0}) == STATUS_OK);
-    CHECK(landscape_create(&landscape, &config, &here, NULL, 0, NULL, 0) == STATUS_OK);
-    ElevationGrid grid = {.nx = 2001, .ny = 101, .x0_m = -10000, .y0_m = -500, .spacing_m = 10, .step_m = 0.01};
-    elevation_destroy(&landscape.elevation);
-    CHECK(elevation_level_create(&landscape.elevation, 0, &grid) == STATUS_OK);
-    elevation_build_pyramids(&landscape.elevation);
-
+    plane();
     begin(0, INFINITY);
     say(1, &eye);
     CHECK(wait_for(&frame, false) == CLOCK_DUE && heartbeat(NULL) == 1);
@@ -200,12 +205,85 @@ static void heights_are_those_of_the_ground(void **state)
     landscape_destroy(&landscape);
 }
 
+/* The same plane, from 500 m over its origin: straight down 500 m, by 30 degrees down 1000 m, whatever the azimuth; a
+ * place 1 m above it is seen, one 1 m below it is hidden by the ground where the line crosses x = a. */
+static void lines_of_sight_end_at_the_ground(void **state)
+{
+    (void)state;
+    const double                         a_m = 6378137, l_rad = 0.05 * rad_per_deg, hot_m = a_m / cos(l_rad) - a_m;
+    FrameTime                            frame;
+    CigiPacket                           answer;
+    const CigiLosResponse *const         short_form = &answer.of.los_response;
+    const CigiLosExtendedResponse *const x = &answer.of.los_extended_response;
+    plane();
+    begin(0, INFINITY);
+    say(1, &eye);
+    CHECK(wait_for(&frame, false) == CLOCK_DUE && heartbeat(NULL) == 1);
+    c.clock.done(&c.clock, &frame);
+
+    CigiPacket                  along = {.id = cigi_los_vector_request,
+                                         .of.los_vector_request = {.id = 8, .elevation_deg = -90, .most_m = 5000, .from = {0, 0, 500}}};
+    CigiLosVectorRequest *const v = &along.of.los_vector_request;
+    ask(&answer, &along);
+    CHECK(answer.id == cigi_los_response && short_form->id == 8 && !short_form->valid); /* there is no ground */
+    c.ground = (CigiGround){&landscape, &here};
+    ask(&answer, &along);
+    CHECK(short_form->valid && !short_form->entity_valid && short_form->count == 1);
+    CHECK_NEAR(short_form->range_m, 500, 1e-6);
+    v->extended = true;
+    v->elevation_deg = -30;
+    for (int k = 0; k < 4; k++) {
+        v->azimuth_deg = 90 * (float)k;
+        ask(&answer, &along);
+        CHECK(answer.id == cigi_los_extended_response && x->valid && x->range_valid && x->alpha == 255);
+        CHECK_NEAR(x->range_m, 1000, 1e-5);
+        const double east_m = k % 2 ? (k == 1 ? 1 : -1) * 1000 * cos(30 * rad_per_deg) : 0;
+        CHECK_NEAR(x->p[1], atan2(east_m, a_m) / rad_per_deg, 1e-10);
+        if (k % 2) CHECK_NEAR(x->p[2], hypot(a_m, east_m) - a_m, 1e-5);
+        else CHECK(k == 0 ? x->p[0] > 0 : x->p[0] < 0); /* north, south */
+        CHECK_NEAR(x->normal_elevation_deg, 90, 0.02);
+    }
+    v->least_m = 1001; /* an intersection before the least range */
+    ask(&answer, &along);
+    CHECK(x->valid && !x->range_valid && x->range_m == 0);
+    v->least_m = 0;
+    v->most_m = 999;
+    ask(&answer, &along);
+    CHECK(!x->range_valid);
+    v->from_entity = true; /* entity 0 is at latitude and longitude 0, 500 m: straight down from 100 m below it */
+    v->elevation_deg = -90;
+    v->from[2] = 100;
+    ask(&answer, &along);
+    CHECK_NEAR(x->range_m, 400, 1e-5);
+
+    CigiPacket                   to = {.id = cigi_los_segment_request,
+                                       .of.los_segment_request = {.id = 9, .from = {0, 0, 500}, .to = {0, 0.05, hot_m + 1}}};
+    CigiLosSegmentRequest *const g = &to.of.los_segment_request;
+    ask(&answer, &to);
+    CHECK(answer.id == cigi_los_response && short_form->id == 9 && short_form->visible && !short_form->valid);
+    g->to[2] = hot_m; /* on the ground */
+    ask(&answer, &to);
+    CHECK(short_form->visible);
+    g->to[2] = hot_m - 1;
+    ask(&answer, &to);
+    CHECK(!short_form->visible && short_form->valid);
+    const double r_m = a_m + hot_m - 1, drop_m = 500 + a_m - r_m * cos(l_rad);
+    CHECK_NEAR(short_form->range_m, hypot(drop_m, r_m * sin(l_rad)) * 500 / drop_m, 1e-4);
+    g->to_entity = g->other_entity = true; /* an entity that was never reported */
+    g->destination_entity = 77;
+    ask(&answer, &to);
+    CHECK(!short_form->visible && !short_form->valid);
+    end();
+    landscape_destroy(&landscape);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_are_those_of_the_host),
         cmocka_unit_test(a_host_that_begins_anew_before_the_last_frame_ends_it),
         cmocka_unit_test(heights_are_those_of_the_ground),
+        cmocka_unit_test(lines_of_sight_end_at_the_ground),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

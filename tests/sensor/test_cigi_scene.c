@@ -54,9 +54,9 @@ static void places_on_the_equator(void **state)
     CHECK_NEAR(p[1], 14, 1e-8); /* the offset to the right was not enabled */
     CHECK_NEAR(p[2], -2, 1e-8);
     CHECK_NEAR(r[0], -1, 1e-15); /* looks down */
-    CHECK(cigi_scene_place(p, &scene, (const double[3]){0, 0, 5}, true, 1));
+    CHECK(cigi_scene_place(p, r, &scene, (const double[3]){0, 0, 5}, true, 1));
     CHECK_NEAR(p[0], a_m + 98, 1e-8);
-    CHECK(cigi_scene_place(p, &scene, (const double[3]){0, 270, -100}, false, 0)); /* 90 degrees west */
+    CHECK(cigi_scene_place(p, r, &scene, (const double[3]){0, 270, -100}, false, 0)); /* 90 degrees west */
     CHECK_NEAR(p[1], 100 - a_m, 1e-8);
 }
 
@@ -95,8 +95,8 @@ static void what_is_out_of_range_is_refused(void **state)
     CHECK(!entity(3, 1, 10, 20, 30, 361) && !child(4, 3, 2e6, 0, 0));
     CHECK(!view((CigiViewControl){.view = 1, .offset_m = {0, -2e6f}}) && !view((CigiViewControl){.roll_deg = -400}));
     CHECK(scene.refused == 7 && scene.entity_count == 1 && scene.view_count == 0 && scene.entity[0].p[0] == 10);
-    CHECK(!cigi_scene_place(p, &scene, (const double[3]){91, 0, 0}, false, 0));
-    CHECK(!cigi_scene_place(p, &scene, (const double[3]){0, 0, 0}, true, 77));
+    CHECK(!cigi_scene_place(p, r, &scene, (const double[3]){91, 0, 0}, false, 0));
+    CHECK(!cigi_scene_place(p, r, &scene, (const double[3]){0, 0, 0}, true, 77));
 }
 
 static void parents_in_a_circle_have_no_place(void **state)

@@ -154,8 +154,8 @@ def judge_heights(host, out, answers):
         host.fail(f'{hat} m above ground, the picture has {middle}')
     if abs(hat + hot - eye_m) > 1e-6 or abs(carrier_hat + carrier_hot - carrier(FRAMES - 1)[2]) > 1e-6:
         host.fail(f'heights above and of terrain, {hat} and {hot}, do not add up to {eye_m}')
-    if answers[104, 6][0][0] & 1:
-        host.fail('a line of sight is answered as valid')
+    if not answers[104, 6][0][0] & 1 or abs(answers[104, 6][1] - carrier_hat) > 0.01:
+        host.fail(f'straight down the ground is {answers[104, 6][1]} m away, not {carrier_hat}')
     if not any(number == 106 for number, _ in answers):
         host.fail('no Sensor Response')
     print(f'{hat:.3f} m above ground, the picture has {middle:.3f}')

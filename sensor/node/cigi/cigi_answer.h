@@ -13,9 +13,9 @@ typedef struct CigiGround {
 } CigiGround;
 
 /* The answer to HAT/HOT, Line of Sight and Sensor Control packets. Heights of terrain are above the ellipsoid; beyond
- * the ground, and for an entity that was not reported, an answer is not valid. A line of sight is never valid, and a
- * sensor is always searching: this node does not trace rays for a host, and has no tracker. False: nothing is to be
- * said. */
+ * the ground, and by an entity that was not reported, an answer is not valid. Lines of sight are straight, and met by
+ * the ground alone, not by plants, buildings or entities; a sensor is always searching: this node has no tracker.
+ * False: nothing is to be said. */
 bool cigi_answer(CigiPacket *out, const CigiPacket *request, const CigiScene *scene, const CigiGround *ground,
                  uint32_t ig_frame);
 

@@ -110,9 +110,6 @@ static void take_packet(CigiNode *node, const CigiPacket *packet)
         break;
     case cigi_los_segment_request:
     case cigi_los_vector_request:
-        once(&node->unanswerable, "lines of sight are asked for; they are answered as not valid");
-        keep_request(node, packet);
-        break;
     case cigi_hat_hot_request:
     case cigi_sensor_control:
         keep_request(node, packet);

@@ -25,8 +25,8 @@ typedef struct CigiNode {
     int         fixes;
     CigiPacket  request[cigi_requests_most]; /* not answered yet; [requests] */
     int         requests;
-    uint64_t    requests_lost;                   /* beyond that capacity */
-    bool        other_fov, unanswerable, unseen; /* said once */
+    uint64_t    requests_lost;     /* beyond that capacity */
+    bool        other_fov, unseen; /* said once */
 } CigiNode;
 
 /* Opens exercise.cigi; Start of Frame is sent from the first cigi_node_wait on. */

@@ -151,13 +151,14 @@ bool cigi_scene_view(double p_ecef[3], double r_ecef_from_view[9], const CigiSce
     return true;
 }
 
-bool cigi_scene_place(double p_ecef[3], const CigiScene *scene, const double p[3], bool by_entity, uint16_t entity)
+bool cigi_scene_place(double p_ecef[3], double r_ecef_from_axes[9], const CigiScene *scene, const double p[3],
+                      bool by_entity, uint16_t entity)
 {
-    double at[3], r[9], offset_ecef[3];
+    double at[3], offset_ecef[3];
     if (!place_good(p, by_entity)) return false;
-    if (!by_entity) return on_earth(p_ecef, r, p);
-    if (!cigi_scene_entity(at, r, scene, entity)) return false;
-    m3_mul_v3(offset_ecef, r, p);
+    if (!by_entity) return on_earth(p_ecef, r_ecef_from_axes, p);
+    if (!cigi_scene_entity(at, r_ecef_from_axes, scene, entity)) return false;
+    m3_mul_v3(offset_ecef, r_ecef_from_axes, p);
     v3_add(p_ecef, at, offset_ecef);
     return true;
 }

@@ -25,7 +25,9 @@ bool cigi_scene_take(CigiScene *scene, const CigiPacket *packet);
 bool cigi_scene_entity(double p_ecef[3], double r_ecef_from_body[9], const CigiScene *scene, uint16_t id);
 /* Of a view's eye; a view that no View Control was sent for is on entity 0, along its axes. */
 bool cigi_scene_view(double p_ecef[3], double r_ecef_from_view[9], const CigiScene *scene, uint16_t view);
-/* A place of a request: latitude and longitude in degrees and height, or by_entity: an offset in an entity's axes. */
-bool cigi_scene_place(double p_ecef[3], const CigiScene *scene, const double p[3], bool by_entity, uint16_t entity);
+/* A place of a request: latitude and longitude in degrees and height, or by_entity: an offset in an entity's axes. Its
+ * axes, for directions, are north, east, down, or the entity's. */
+bool cigi_scene_place(double p_ecef[3], double r_ecef_from_axes[9], const CigiScene *scene, const double p[3],
+                      bool by_entity, uint16_t entity);
 
 #endif
