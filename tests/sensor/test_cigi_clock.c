@@ -147,8 +147,8 @@ static void ask(CigiPacket *answer, const CigiPacket *request)
     }
 }
 
-/* Posts of height 0 at the tangent plane of latitude and longitude 0: the plane x = 6378137 of ECEF. A place l east of it
- * on the equator has its surface at a / cos l - a above the ellipsoid, and the normal leans by l to the west. */
+/* Posts of height 0 at the tangent plane of latitude and longitude 0: the plane x = 6378137 of ECEF. A place l east of
+ * it on the equator has its surface at a / cos l - a above the ellipsoid, and the normal leans by l to the west. */
 static Landscape  landscape;
 static LocalFrame here;
 
