@@ -130,8 +130,8 @@ static bool take_time(CigiSession *s, const CigiIgControl *c)
         ticks = s->timed ? cigi_unwrap(s->ticks, c->timestamp) : (int64_t)c->timestamp;
     } else {
         s->events.unstamped++;
-        if (!(s->config.unstamped > 0)) return false;
-        ticks = s->timed ? s->ticks + llround(s->config.unstamped) : 0;
+        if (!(s->config.unstamped_ticks > 0)) return false;
+        ticks = s->timed ? s->ticks + llround(s->config.unstamped_ticks) : 0;
     }
     if (s->timed && ticks < s->ticks) {
         s->events.time_back++;

@@ -19,8 +19,8 @@ enum { cigi_datagram_octets = 1472 }; /* what Ethernet carries unfragmented over
 typedef struct CigiSessionConfig {
     double repeat_s; /* Start of Frame is sent again after so long without an answer; > 0 */
     double silent_s; /* a host that is silent for so long has stopped; > 0 */
-    double
-        unstamped; /* ticks from frame to frame of a host whose time stamps are not valid; 0: its frames are refused */
+    /* From frame to frame of a host whose time stamps are not valid; 0: its frames have no picture. */
+    double unstamped_ticks;
 } CigiSessionConfig;
 
 /* A quarter of a second, five seconds, refused. */

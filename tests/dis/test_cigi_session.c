@@ -172,7 +172,7 @@ static void time_that_goes_back_or_is_missing(void **state)
     CHECK(control(3, 1000, 3) == CIGI_DUE && s.events.time_back == 1); /* a host that stands still */
     cigi_session_delivered(&s, now_s);
     for (int unstamped = 0; unstamped < 2; unstamped++) {
-        s.config.unstamped = unstamped ? 2000 : 0;
+        s.config.unstamped_ticks = unstamped ? 2000 : 0;
         const size_t octets = write_control((uint32_t)(4 + unstamped), 5, cigi_mode_operate, 0);
         buffer[4] &= (uint8_t)~4u;
         CHECK(cigi_session_receive(&s, buffer, octets, now_s) == (unstamped ? CIGI_DUE : CIGI_IDLE));

@@ -3,6 +3,7 @@
 # and heights against pyproj, scipy and the frame's own ranges. A host and a network that falter change no bit.
 # labels: small
 . "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/live.sh"
 judges python3.numpy python3.OpenEXR python3.pyproj python3.scipy
 flight=$(dirname "$0")/../tools/cigi_flight.py
 
@@ -14,6 +15,20 @@ check "what is not read is said" complained 'id 220'
 check "frames before the host says where the eye is are none" complained 'has not said where the eye is'
 check "the same flight, with pauses and repetitions" fly "$tmp/two" --rough
 check "gives the same bits" same_hashes "$tmp/one" "$tmp/two"
+
+# a host that never comes
+free_port
+"$pitviper" replay "$tmp/demo.pcap" --out "$tmp/alone" "${quick[@]}" --cigi 127.0.0.1:9 --set exercise.cigi_port=0 >"$tmp/alone.out" 2>&1
+check "a port of its own that is none is refused" [ $? = 2 ]
+"$pitviper" replay "$tmp/demo.pcap" --out "$tmp/alone" "${quick[@]}" --cigi "[::1]:9" --set exercise.cigi_port=$port >"$tmp/alone.out" 2>&1 &
+alone=$!
+check "it says that no host has answered" until_true grep -q 'no host has answered' "$tmp/alone.out"
+run replay "$tmp/demo.pcap" --out "$tmp/second" --cigi "[::1]:9" --set exercise.cigi_port=$port
+check "a second one on its port is refused" [ $code = 1 ]
+check "and says which setting chooses another" complained 'exercise.cigi_port'
+kill -INT $alone
+wait $alone
+check "told to stop, it stops" [ $? = 130 ]
 
 refused() { # refused WHAT TEXT OPTION...
     local what=$1 text=$2; shift 2

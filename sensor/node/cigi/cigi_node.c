@@ -29,7 +29,7 @@ static void say_counted(const CigiNode *node)
 {
     const CigiSessionCounters *e = &node->session.events;
     const CigiCounters        *c = &node->session.counters;
-    log_info("cigi: %" PRIu64 " frames in step, %" PRIu64
+    log_info("cigi: %" PRIu64 " frames asked for, %" PRIu64
              " of the host without a picture; Start of Frame sent again %" PRIu64
              " times; of the host's datagrams %" PRIu64 " repeated, %" PRIu64 " old, %" PRIu64 " ahead; %" PRIu64
              " of its frames lost",
@@ -135,6 +135,19 @@ static void say_news(const CigiSession *s)
         log_warn("cigi: the host's time stamps are not valid: its frames have no picture");
 }
 
+/* Once, where a host that never answers may have another address or port. */
+static void say_unheard(CigiNode *node)
+{
+    const CigiSession *s = &node->session;
+    if (node->asked_s == 0) node->asked_s = wall_clock_s();
+    if (s->heard || node->unheard || wall_clock_s() - node->asked_s < s->config.silent_s) return;
+    node->unheard = true;
+    log_warn(
+        "cigi: no host has answered Start of Frame for %g s; it is sent on: exercise.cigi and exercise.cigi_port say "
+        "where to and from",
+        s->config.silent_s);
+}
+
 CigiEvent cigi_node_wait(CigiNode *node, const CigiGround *ground, double wait_s)
 {
     CigiSession   *s = &node->session;
@@ -142,6 +155,7 @@ CigiEvent cigi_node_wait(CigiNode *node, const CigiGround *ground, double wait_s
     size_t         octets;
     CigiPacket     packet;
     send_due(node);
+    say_unheard(node);
     const bool heard = cigi_link_receive(&datagram, &octets, node->link, wait_s);
     CigiEvent  event = heard ? cigi_session_receive(s, datagram, octets, wall_clock_s()) : CIGI_REFUSED;
     if (event != CIGI_REFUSED) say_news(s);
