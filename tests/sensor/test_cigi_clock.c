@@ -277,6 +277,49 @@ static void lines_of_sight_end_at_the_ground(void **state)
     landscape_destroy(&landscape);
 }
 
+/* A request with a period of 3 is answered at once, and again after 3, 6 ... frames, until another of its number comes.
+ */
+static void requests_with_a_period_stand(void **state)
+{
+    (void)state;
+    FrameTime  frame;
+    CigiPacket answer;
+    CigiPacket request = {.id = cigi_hat_hot_request, .of.hat_hot_request = {.id = 5, .period = 3, .p = {0, 0, 500}}};
+    const CigiPacket         sight = {.id = cigi_los_vector_request, .of.los_vector_request = {.id = 5}};
+    CigiHatHotRequest *const r = &request.of.hat_hot_request;
+    begin(0, INFINITY);
+    say(1, &eye);
+    CHECK(wait_for(&frame, false) == CLOCK_DUE && heartbeat(NULL) == 1);
+    c.clock.done(&c.clock, &frame);
+    ask(&answer, &request);
+    CHECK(answer.id == cigi_hat_hot_response && answer.of.hat_hot_response.id == 5);
+    for (int i = 1; i <= 7; i++) {
+        ask(&answer, &eye);
+        CHECK(answer.id == (i % 3 == 0 ? cigi_hat_hot_response : 0));
+    }
+    ask(&answer, &sight); /* of the same number, and another kind: both stay apart */
+    CHECK(answer.id == cigi_los_response);
+    ask(&answer, &eye); /* the ninth */
+    CHECK(answer.id == cigi_hat_hot_response);
+    r->period = 0;
+    ask(&answer, &request);
+    CHECK(answer.id == cigi_hat_hot_response);
+    for (int i = 0; i < 6; i++) {
+        ask(&answer, &eye);
+        CHECK(answer.id == 0);
+    }
+    r->period = 1;
+    for (int i = 0; i < cigi_requests_most + 3; i++) {
+        r->id = (uint16_t)(100 + i);
+        ask(&answer, &request);
+    }
+    CHECK(c.node->requests_lost == 3 && c.node->standing_count == cigi_requests_most);
+    frame_number = 0;
+    say_as(cigi_mode_standby, 0, NULL); /* a host that begins anew asks anew */
+    CHECK(wait_for(&frame, true) == CLOCK_EARLY && c.node->standing_count == 0);
+    end();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -284,6 +327,7 @@ int main(void)
         cmocka_unit_test(a_host_that_begins_anew_before_the_last_frame_ends_it),
         cmocka_unit_test(heights_are_those_of_the_ground),
         cmocka_unit_test(lines_of_sight_end_at_the_ground),
+        cmocka_unit_test(requests_with_a_period_stand),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

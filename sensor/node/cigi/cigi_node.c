@@ -67,12 +67,22 @@ static void send_due(CigiNode *node)
     if (cigi_session_send(&datagram, &octets, &node->session)) cigi_link_send(node->link, datagram, octets);
 }
 
+static void answer(CigiNode *node, const CigiPacket *request, const CigiGround *ground)
+{
+    CigiPacket response;
+    if (cigi_answer(&response, request, &node->scene, ground, node->session.ig_frame))
+        cigi_session_answer(&node->session, &response);
+}
+
 void cigi_node_delivered(CigiNode *node, const CigiGround *ground)
 {
-    CigiPacket answer;
-    for (int i = 0; i < node->requests; i++)
-        if (cigi_answer(&answer, &node->request[i], &node->scene, ground, node->session.ig_frame))
-            cigi_session_answer(&node->session, &answer);
+    for (int i = 0; i < node->standing_count; i++) {
+        CigiStanding *s = &node->standing[i];
+        if (s->left-- > 0) continue;
+        answer(node, &s->request, ground);
+        s->left = s->period - 1;
+    }
+    for (int i = 0; i < node->requests; i++) answer(node, &node->request[i], ground);
     node->requests = 0;
     cigi_session_delivered(&node->session, wall_clock_s());
     send_due(node);
@@ -96,10 +106,40 @@ static void take_view_definition(CigiNode *node, const CigiViewDefinition *d)
     node->other_fov = true;
 }
 
+/* The period of a request, and which it is: HAT/HOT and Line of Sight number theirs apart. */
+static int period_of(uint32_t *which, const CigiPacket *packet)
+{
+    enum { of_heights = 1 << 16, of_sights = 2 << 16 };
+    const CigiHatHotRequest     *height = &packet->of.hat_hot_request;
+    const CigiLosSegmentRequest *segment = &packet->of.los_segment_request;
+    const CigiLosVectorRequest  *vector = &packet->of.los_vector_request;
+    *which = 0;
+    switch (packet->id) {
+    case cigi_hat_hot_request:
+        return *which = of_heights | height->id, height->period;
+    case cigi_los_segment_request:
+        return *which = of_sights | segment->id, segment->period;
+    case cigi_los_vector_request:
+        return *which = of_sights | vector->id, vector->period;
+    default:
+        return 0;
+    }
+}
+
+/* A request with a period stands until another of its number comes. */
 static void keep_request(CigiNode *node, const CigiPacket *packet)
 {
-    if (node->requests == cigi_requests_most) node->requests_lost++;
-    else node->request[node->requests++] = *packet;
+    uint32_t  which, other;
+    const int period = period_of(&which, packet);
+    for (int i = 0; which && i < node->standing_count; i++) {
+        period_of(&other, &node->standing[i].request);
+        if (other == which) node->standing[i--] = node->standing[--node->standing_count];
+    }
+    const bool stands = period > 0;
+    if (stands && node->standing_count < cigi_requests_most)
+        node->standing[node->standing_count++] = (CigiStanding){*packet, period, 0};
+    else if (!stands && node->requests < cigi_requests_most) node->request[node->requests++] = *packet;
+    else node->requests_lost++;
 }
 
 static void take_packet(CigiNode *node, const CigiPacket *packet)
@@ -159,6 +199,7 @@ CigiEvent cigi_node_wait(CigiNode *node, const CigiGround *ground, double wait_s
     const bool heard = cigi_link_receive(&datagram, &octets, node->link, wait_s);
     CigiEvent  event = heard ? cigi_session_receive(s, datagram, octets, wall_clock_s()) : CIGI_REFUSED;
     if (event != CIGI_REFUSED) say_news(s);
+    if (cigi_session_news(s) & CIGI_NEWS_RESTARTED) node->standing_count = node->requests = 0;
     while (heard && cigi_session_packet(&packet, s)) take_packet(node, &packet);
     if (event == CIGI_IDLE) cigi_node_delivered(node, ground);
     if (cigi_session_look(s, wall_clock_s()))

@@ -15,19 +15,27 @@ typedef struct CigiFix {
 
 enum { cigi_requests_most = 64 };
 
+/* A request that is answered again every so many frames. */
+typedef struct CigiStanding {
+    CigiPacket request;
+    int        period, left; /* frames; left: until the next answer */
+} CigiStanding;
+
 typedef struct CigiNode {
-    CigiLink   *link;
-    CigiSession session;
-    CigiScene   scene;
-    uint16_t    view;
-    double      hfov_deg; /* the sensor's */
-    double      asked_s;  /* wall_clock_s of the first Start of Frame; 0: not yet */
-    CigiFix     fix[2];   /* of the frame that is due, and of the one before; [fixes] */
-    int         fixes;
-    CigiPacket  request[cigi_requests_most]; /* not answered yet; [requests] */
-    int         requests;
-    uint64_t    requests_lost;              /* beyond that capacity */
-    bool        other_fov, unseen, unheard; /* said once */
+    CigiLink    *link;
+    CigiSession  session;
+    CigiScene    scene;
+    uint16_t     view;
+    double       hfov_deg; /* the sensor's */
+    double       asked_s;  /* wall_clock_s of the first Start of Frame; 0: not yet */
+    CigiFix      fix[2];   /* of the frame that is due, and of the one before; [fixes] */
+    int          fixes;
+    CigiPacket   request[cigi_requests_most]; /* not answered yet; [requests] */
+    int          requests;
+    CigiStanding standing[cigi_requests_most]; /* [standing_count] */
+    int          standing_count;
+    uint64_t     requests_lost;              /* beyond these capacities */
+    bool         other_fov, unseen, unheard; /* said once */
 } CigiNode;
 
 /* Opens exercise.cigi; Start of Frame is sent from the first cigi_node_wait on. */
