@@ -4,6 +4,22 @@
 
 #include "dis/cigi/cigi_fields.h"
 
+const char *cigi_drop_name(CigiDrop drop)
+{
+    static const char *const name[CIGI_DROP_COUNT] = {
+        [CIGI_DROP_SHORT] = "short",
+        [CIGI_DROP_FIRST] = "first_packet",
+        [CIGI_DROP_VERSION] = "version",
+        [CIGI_DROP_MAGIC] = "byte_swap",
+        [CIGI_DROP_SIZE] = "size",
+        [CIGI_DROP_SIZE_LONG] = "size_too_long",
+        [CIGI_DROP_SIZE_SHORT] = "size_too_short",
+        [CIGI_DROP_NOT_FINITE] = "not_finite",
+        [CIGI_DROP_SECOND] = "second_control",
+    };
+    return (unsigned)drop < CIGI_DROP_COUNT ? name[drop] : "unknown";
+}
+
 const char *cigi_drop_cause(CigiDrop drop)
 {
     static const char *const cause[CIGI_DROP_COUNT] = {

@@ -18,6 +18,7 @@ typedef enum CigiDrop {
     CIGI_DROP_COUNT
 } CigiDrop;
 
+const char *cigi_drop_name(CigiDrop drop);  /* in run.json */
 const char *cigi_drop_cause(CigiDrop drop); /* a few words for people */
 const char *cigi_packet_name(uint8_t id);   /* `Entity Control`; `unknown packet` */
 

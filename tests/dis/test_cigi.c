@@ -290,7 +290,11 @@ static void a_second_ig_control_is_not_used(void **state)
 static void drops_and_packets_have_names(void **state)
 {
     (void)state;
-    for (int why = 0; why < CIGI_DROP_COUNT; why++) CHECK(strcmp(cigi_drop_cause((CigiDrop)why), "unknown") != 0);
+    for (int why = 0; why < CIGI_DROP_COUNT; why++) {
+        CHECK(strcmp(cigi_drop_cause((CigiDrop)why), "unknown") != 0);
+        CHECK(strcmp(cigi_drop_name((CigiDrop)why), "unknown") != 0);
+        for (int k = 0; k < why; k++) CHECK(strcmp(cigi_drop_name((CigiDrop)why), cigi_drop_name((CigiDrop)k)) != 0);
+    }
     CHECK(strcmp(cigi_packet_name(cigi_sensor_control), "Sensor Control") == 0);
     CHECK(strcmp(cigi_packet_name(99), "unknown packet") == 0);
 }

@@ -94,6 +94,7 @@ def fly(host, out, rough, live):
                         host.sensor(VIEW, 2), host.user(220, 24)]
         host.step(stamp(k), *packets)
         if rough:
+            host.send(bytes(24))  # no CIGI
             host.send(host.control(stamp(k)), *packets)
         sof, rest = host.next()
         if (sof['stamp'], sof['host_frame'], sof['mode']) != (stamp(k), host.frame, OPERATE):
