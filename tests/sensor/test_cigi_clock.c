@@ -315,8 +315,9 @@ static void requests_with_a_period_stand(void **state)
     }
     CHECK(c.node->requests_lost == 3 && c.node->standing_count == cigi_requests_most);
     frame_number = 0;
-    say_as(cigi_mode_standby, 0, NULL); /* a host that begins anew asks anew */
-    CHECK(wait_for(&frame, true) == CLOCK_EARLY && c.node->standing_count == 0);
+    say_as(cigi_mode_standby, 0, &request); /* a host that begins anew asks anew */
+    CHECK(wait_for(&frame, true) == CLOCK_EARLY && c.node->standing_count == 1);
+    CHECK(c.clock.wait(&frame, &c.clock) == CLOCK_EARLY && c.node->standing_count == 1);
     end();
 }
 

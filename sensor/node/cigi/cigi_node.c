@@ -199,7 +199,7 @@ CigiEvent cigi_node_wait(CigiNode *node, const CigiGround *ground, double wait_s
     const bool heard = cigi_link_receive(&datagram, &octets, node->link, wait_s);
     CigiEvent  event = heard ? cigi_session_receive(s, datagram, octets, wall_clock_s()) : CIGI_REFUSED;
     if (event != CIGI_REFUSED) say_news(s);
-    if (cigi_session_news(s) & CIGI_NEWS_RESTARTED) node->standing_count = node->requests = 0;
+    if (heard && cigi_session_news(s) & CIGI_NEWS_RESTARTED) node->standing_count = node->requests = 0;
     while (heard && cigi_session_packet(&packet, s)) take_packet(node, &packet);
     if (event == CIGI_IDLE) cigi_node_delivered(node, ground);
     if (cigi_session_look(s, wall_clock_s()))
