@@ -7,6 +7,7 @@
 #include "sensor/node/clock/log_clock.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/player/player.h"
+#include "sensor/commands/lockstep.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/commands/program.h"
 #include "sensor/publish/video/video_names.h"
@@ -372,12 +373,14 @@ static int replay(const Options *options, MadeWorld *made)
 {
     LogClock clock = log_clock(options->speed);
     Run run = {.options = *options, .made = made, .check = check_span, .frames = replay_frames, .clock = &clock.clock};
+    Lockstep    lockstep;
     Sending     sending = {0};
     DisEntityId host[options_hosts_max];
     char        log_name[4096];
     snprintf(log_name, sizeof log_name, "%s", run.options.log);
     run.log_name = basename(log_name);
-    Status failed = STATUS_OK, status = prepare(&run, host);
+    Status failed = STATUS_OK, status = lockstep_begin(&lockstep, &run, NULL);
+    if (status == STATUS_OK) status = prepare(&run, host);
     if (status == STATUS_OK) status = open_sending(&sending, &run, &run.made->log);
     if (status == STATUS_OK) status = open_folders(&run, host);
     if (status == STATUS_OK) video_watch_print(&run.options.config, run.bands);
@@ -388,6 +391,7 @@ static int replay(const Options *options, MadeWorld *made)
         if (one != STATUS_OK) failed = one; /* the others are still rendered */
         else if (done++ == 0 && run.options.host_count > 1) frame_files_clear(run.options.out); /* a run of one host */
     }
+    lockstep_end(&lockstep);
     if (status == STATUS_OK) status = failed;
     const Status sent = close_sending(&sending);
     if (status == STATUS_OK) status = sent;

@@ -11,7 +11,9 @@
 #include "sensor/node/live/live_recording.h"
 #include "sensor/node/live/pace.h"
 #include "sensor/node/live/ready.h"
+#include "sensor/node/player/heard.h"
 #include "sensor/node/player/player.h"
+#include "sensor/commands/lockstep.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/publish/video/video_names.h"
 #include "sensor/settings/config.h"
@@ -39,12 +41,11 @@ typedef struct Live {
     double         health_s;                /* when it was last checked */
     char           host[dis_id_text_size];  /* at the end */
     char           to[run_network_to_size]; /* destination, for messages */
-    /* datagrams received before the choices; each owns its memory */
-    DisDatagram *heard;
-    int          received_count, received_capacity;
-    LiveClock    clock;
-    Player      *player;  /* once there is one */
-    Session     *session; /* likewise */
+    Heard          heard;                   /* before the choices */
+    LiveClock      clock;
+    Lockstep       lockstep; /* with a CIGI host, in place of the clock */
+    Player        *player;   /* once there is one */
+    Session       *session;  /* likewise */
     /* wall clock, s */
     double   begun_s, flushed_s, shown_s;
     uint64_t shown_frames; /* frames kept by shown_s */
@@ -154,30 +155,6 @@ static void check_health(Live *l, const Session *session)
 
 /* ---- listening --------------------------------------------------------------------------------- */
 
-static void drop_received(Live *l, int count)
-{
-    for (int i = 0; i < count; i++) free((void *)(uintptr_t)l->heard[i].bytes);
-    l->received_count -= count;
-    memmove(l->heard, l->heard + count, (size_t)l->received_count * sizeof *l->heard);
-}
-
-static Status store_received(Live *l, const DisDatagram *datagram)
-{
-    if (l->received_count == l->received_capacity) {
-        const int    larger = l->received_capacity ? 2 * l->received_capacity : 4 * player_opening_before;
-        DisDatagram *grown = realloc(l->heard, (size_t)larger * sizeof *grown);
-        if (!grown) return STATUS_NO_MEMORY;
-        l->heard = grown;
-        l->received_capacity = larger;
-    }
-    uint8_t *bytes = malloc(datagram->octets + 1);
-    if (!bytes) return STATUS_NO_MEMORY;
-    memcpy(bytes, datagram->bytes, datagram->octets);
-    l->heard[l->received_count] = *datagram;
-    l->heard[l->received_count++].bytes = bytes;
-    return STATUS_OK;
-}
-
 /* Collects the datagrams for the choices, by the rule of player_opening, as they arrive. heard: false when the node is
  * stopped before. */
 static Status listen_first(bool *heard, Live *l)
@@ -190,14 +167,14 @@ static Status listen_first(bool *heard, Live *l)
         const bool last = until_ns < INT64_MAX && dis_udp_now_ns() > until_ns;
         if (last) dis_udp_close_tick(l->udp, until_ns);
         while (take(&datagram, l, until_ns)) {
-            const Status status = store_received(l, &datagram);
+            const Status status = heard_add(&l->heard, &datagram);
             if (status != STATUS_OK) return status;
             if (until_ns < INT64_MAX) continue;
             if (player_starts(&l->run.first, &datagram, config)) {
                 l->run.until_s = player_listens_until_s(&datagram, config);
                 until_ns = dis_unix_ns_until(l->run.until_s);
-                if (l->received_count > player_opening_before + 1)
-                    drop_received(l, l->received_count - player_opening_before - 1);
+                if (l->heard.count > player_opening_before + 1)
+                    heard_drop(&l->heard, l->heard.count - player_opening_before - 1);
                 l->ready.heard_s = l->ready.since_s = wall_clock_s();
                 log_info("run: heard the first entity; listening for %g s (exercise.listen_s)",
                          config->exercise.listen_s);
@@ -205,8 +182,8 @@ static Status listen_first(bool *heard, Live *l)
                     "run: what stood or drove before is not known%s; for what stands at its first report, a time for "
                     "which it has stood there is drawn (heat.stood_min)",
                     *config->heat.marks ? " beyond heat.marks" : " (heat.marks)");
-            } else if (l->received_count >= 4 * player_opening_before) {
-                drop_received(l, l->received_count - player_opening_before);
+            } else if (l->heard.count >= 4 * player_opening_before) {
+                heard_drop(&l->heard, l->heard.count - player_opening_before);
             }
         }
         if (last) {
@@ -218,7 +195,7 @@ static Status listen_first(bool *heard, Live *l)
         const int64_t look = dis_udp_now_ns() + check_ns;
         dis_udp_wait(l->udp, until_ns < look ? until_ns + 1 : look);
     }
-    l->run.view = (DisLog){.count = l->received_count, .datagram = l->heard};
+    l->run.view = (DisLog){.count = l->heard.count, .datagram = l->heard.datagram};
     return STATUS_OK;
 }
 
@@ -342,7 +319,8 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     l->health.sample.host = plan->any_munition                  ? HEALTH_MUNITION
                             : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
                                                                 : HEALTH_BY_ID;
-    const Status status = frame_loop(NULL, &(FrameLoop){&l->clock.clock, enough, receive, make_frame, l});
+    lockstep_span(&l->lockstep, run, fmax(plan->start_s, given_s), l->clock.to_s);
+    const Status status = frame_loop(NULL, &(FrameLoop){run->clock, enough, receive, make_frame, l});
     /* and those that were due while the last one was made */
     if (status == STATUS_OK && over(l) && l->host_there) l->counters.frames_late += live_clock_behind(&l->clock);
     char left_out[latency_lost_size];
@@ -439,6 +417,7 @@ static Status run_node(Live *l)
     Status         status = run_measure_machine(&l->run);
     if (status == STATUS_OK) status = run_prepare(&l->run);
     if (status == STATUS_OK) status = open_network(l);
+    if (status == STATUS_OK) status = lockstep_begin(&l->lockstep, &l->run, &l->clock);
     /* now, not hours later when the first entity is received; the socket first: an older recording must not be lost for
      * nothing */
     if (status == STATUS_OK) status = open_files(l);
@@ -474,7 +453,7 @@ int run_command(int argc, char **argv)
     l->run.live = &l->counters;
     l->run.user = l;
     l->run.publish = count_frame;
-    if (l->run.options.config.quality.deadline) l->run.choose = choose_quality;
+    if (l->run.options.config.quality.deadline && !*l->run.options.config.exercise.cigi) l->run.choose = choose_quality;
     if (publishes(l)) l->run.send = send_pdu;
     if (*l->run.options.config.record.path) l->run.note = note;
     l->run.clock = &l->clock.clock;
@@ -492,7 +471,7 @@ int run_command(int argc, char **argv)
     live_recording_close(l->recording);
     dis_udp_close(l->udp);
     run_close(&l->run);
-    drop_received(l, l->received_count);
-    free(l->heard);
+    lockstep_end(&l->lockstep);
+    heard_free(&l->heard);
     return status == STATUS_OK && (!*name || l->record_whole) ? 0 : 1;
 }

@@ -1,6 +1,7 @@
 /* sensor/reference/reference_run.c: run.json. */
 #include "sensor/reference/reference.h"
 
+#include "dis/cigi/cigi_datagram.h"
 #include "dis/pdu/pdu.h"
 #include "render/trace/visibility/visibility.h"
 #include "sensor/node/run/run_record.h"
@@ -20,6 +21,8 @@ static const char *answer_fault(int i)
     return reason < ANSWER_REASONS ? answer_reason_name[reason] : NULL;
 }
 
+static const char *flaw(int i) { return i < CIGI_DROP_COUNT ? cigi_drop_name((CigiDrop)i) : NULL; }
+
 static const char *form(int i) { return i < ANSWER_FORMS ? answer_form_name[i] : NULL; }
 
 static const char *latency(int i) { return i < LATENCY_STAGE_COUNT ? latency_stage_name[i] : NULL; }
@@ -30,6 +33,8 @@ static const ReferenceWord words[] = {
     {"LIBRARY", "embree, openimageio, geographiclib, erfa, fftw, libc, compiler", NULL, NULL},
     {"TYPE", "the PDU type's number: 1 Entity State, 2 Fire, 3 Detonation ...", NULL, NULL},
     {"REASON", "one of", drop, NULL},
+    {"FLAW", "one of", flaw, NULL},
+    {"PACKET", "the CIGI packet's id: 3 Conformal Clamped Entity Control, 8 Rate Control ...", NULL, NULL},
     {"FORM", "one of", form, NULL},
     {"FAULT", "one of", answer_fault, NULL},
     {"SKIP", "one of", skip, what_skip},

@@ -2,6 +2,7 @@
  * recording; and what involves several settings. */
 #include "sensor/settings/config_private.h"
 
+#include "dis/cigi/cigi_link.h"
 #include "dis/pdu/pdu.h"
 #include "dis/capture/recorder.h"
 #include "pitviper_channels.h"
@@ -357,6 +358,16 @@ static bool exercise_good(const Config *config)
         log_error("config: %sexercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor "
                   "munition nor observer%s",
                   config_where(config, "exercise.host"), config->exercise.host, word_hint(&meant));
+        good = false;
+    }
+    if (*config->exercise.cigi && !cigi_link_address_good(config->exercise.cigi)) {
+        log_error("config: %sexercise.cigi: '%s' is not HOST:PORT with a numeric address, for example 127.0.0.1:8004",
+                  config_where(config, "exercise.cigi"), config->exercise.cigi);
+        good = false;
+    }
+    if (*config->exercise.cigi && *config->exercise.host && strcmp(config->exercise.host, "observer") != 0) {
+        log_error("config: %sexercise.cigi: the host moves the eye, so exercise.host: %s has none; leave that out",
+                  config_where(config, "exercise.cigi"), config->exercise.host);
         good = false;
     }
     if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {

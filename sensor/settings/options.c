@@ -78,6 +78,8 @@ static const struct Row {
     {"threads", THREADS, IN_BOTH, NULL, "N", "number of threads (default: one per processor)"},
     {"seed", KEY, IN_BOTH, "seed", "N", "seed of all random numbers (default: 1)"},
     {"speed", SPEED, IN_REPLAY, NULL, "X", "exercise seconds per second, or max (default: max)"},
+    {"cigi", KEY, IN_BOTH, "exercise.cigi", "HOST:PORT",
+     "a CIGI 3.3 host gives each frame's time and eye, and waits for it"},
     {"causal", KEY, IN_REPLAY, "exercise.causal=true", NULL,
      "use only what had been received by the time of each frame and each\n"
      "choice: the frames of `pitviper run`, to the bit"},

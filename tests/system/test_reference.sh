@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 bare=("${bare[@]}" "${coarse[@]}")
-judges python3.numpy python3.OpenEXR python3.PIL
+judges python3.numpy python3.OpenEXR python3.PIL python3.pyproj python3.scipy
 needs "writable /dev/shm" test -w /dev/shm
 needs "video: built without FFmpeg's libraries" has_video
 
@@ -96,6 +96,9 @@ regress_case village # with buildings and clutter
     --set observer.range_m=300 --set observer.height_m=90 --set radar.preset=seeker_35 --set radar.given="$tmp/given.csv" \
     --coco --set publish.coco_clutter=true >"$tmp/stdout" 2>"$tmp/stderr"
 check "products with scenery" [ $? = 0 ] || cat "$tmp/stderr"
+python3 tests/tools/cigi_flight.py "$pitviper" "$tmp/demo.pcap" "$tmp/cigi" --rough "${bare[@]}" --size 32x24 --threads 1 --bands lwir \
+    >"$tmp/stdout" 2>"$tmp/stderr"
+check "products in step with a CIGI host" [ $? = 0 ] || cat "$tmp/stdout" "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
 run replay "$tmp/two.yaml" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml" \
     --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000
@@ -124,7 +127,7 @@ kill "${senders[@]}" 2>/dev/null
 wait "${senders[@]}" 2>/dev/null
 
 variant=$(find "$tmp/sweep" -name variant.json -printf '%h\n')
-python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$tmp/village" --run "$variant" --run "$tmp/truth" \
+python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$tmp/village" --run "$tmp/cigi" --run "$variant" --run "$tmp/truth" \
     --run "$tmp/sensor" --sweep "$tmp/sweep" --score "$tmp/score" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
     --capture "$tmp/truth.pcapng" --live "$tmp/truth" --capture "$tmp/sensor.pcapng" --streams "${#stream[@]}" || fail "products and their reference"
 

@@ -148,13 +148,18 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
             memcpy(plan.p_aim_ecef, aim->point[0].p_ecef, sizeof plan.p_aim_ecef);
         }
     }
+    *out = plan;
+    if (*config->exercise.cigi) {
+        choice_add(choices, "host: an eye that a CIGI host moves (exercise.cigi)");
+        choice_add(choices, "aim: %s (exercise.aim)", who(name, survey, plan.aim));
+        return STATUS_OK;
+    }
     if (asked) choice_add(choices, "host: a stand-off observer (exercise.host)");
     else
         choice_add(choices, "host: a stand-off observer, no munition flies here%s (exercise.host)",
                    config->exercise.causal ? " now" : "");
     choice_add(choices, "aim: %s, circled at %g m, %g m above (exercise.aim, observer.*)", who(name, survey, plan.aim),
                config->observer.range_m, config->observer.height_m);
-    *out = plan;
     return STATUS_OK;
 }
 
@@ -307,7 +312,8 @@ Status choice_host(HostPlan *out, Choices *choices, const Survey *survey, const 
     Status      status = aim_is_known(survey, config);
     if (status != STATUS_OK) return status;
     if (strcmp(config->exercise.host, host_munition) == 0) return plan_munitions(out, choices, survey, config);
-    if (strcmp(config->exercise.host, host_observer) == 0) return plan_observer(out, choices, survey, config, true);
+    if (*config->exercise.cigi || strcmp(config->exercise.host, host_observer) == 0)
+        return plan_observer(out, choices, survey, config, true);
     if (*config->exercise.host) {
         if (!dis_entity_id_parse(&host, config->exercise.host) || dis_entity_id_is_none(host)) {
             log_error("replay: exercise.host: '%s' is neither site:application:entity nor munition nor observer",
@@ -334,5 +340,5 @@ void choice_rate(HostPlan *plan, Choices *choices, const Config *config)
     plan->rate_hz = config->sensor.rate_hz;
     if (plan->rate_hz > 0) return;
     plan->rate_hz = plan->munition ? 5 : 1; /* a flight lasts seconds, an observation minutes */
-    choice_add(choices, "rate: %g frames a second (sensor.rate_hz)", plan->rate_hz);
+    if (!*config->exercise.cigi) choice_add(choices, "rate: %g frames a second (sensor.rate_hz)", plan->rate_hz);
 }

@@ -12,12 +12,12 @@ int64_t live_clock_due_ns(const LiveClock *c, double t_s)
 /* The number of the newest frame at or before this exercise time. */
 static double newest(const LiveClock *c, double t_s) { return floor(t_s * c->grid.rate_hz) - c->grid.origin; }
 
-static double exercise_s(const LiveClock *c) { return player_time_s(c->player, dis_unix_s(dis_udp_now_ns())); }
+double live_clock_now_s(const LiveClock *c) { return player_time_s(c->player, dis_unix_s(dis_udp_now_ns())); }
 
 static ClockAnswer next(FrameTime *out, FrameClock *clock)
 {
     const LiveClock *c = (const LiveClock *)clock;
-    const double     n = fmax(fmax(newest(c, exercise_s(c)), c->last + 1.0), c->first);
+    const double     n = fmax(fmax(newest(c, live_clock_now_s(c)), c->last + 1.0), c->first);
     *out = (FrameTime){.number = (int)fmin(n, INT32_MAX), .t_s = frame_grid_s(&c->grid, n)};
     return out->t_s > c->to_s ? CLOCK_END : CLOCK_DUE;
 }
@@ -48,6 +48,6 @@ LiveClock live_clock(void) { return (LiveClock){{next, wait, done, wall_s}, .las
 
 uint64_t live_clock_behind(const LiveClock *c)
 {
-    const double n = newest(c, fmin(exercise_s(c), isnan(c->to_s) ? INFINITY : c->to_s));
+    const double n = newest(c, fmin(live_clock_now_s(c), isnan(c->to_s) ? INFINITY : c->to_s));
     return c->last >= 0 && n > c->last ? (uint64_t)(n - c->last) : 0;
 }

@@ -18,6 +18,8 @@ typedef struct LiveClock {
 
 /* A clock whose grid, span and player are to be given before the first frame. */
 LiveClock live_clock(void);
+/* The exercise time that arrives now. */
+double live_clock_now_s(const LiveClock *clock);
 /* Unix time, ns, at which a frame at t_s is due. */
 int64_t live_clock_due_ns(const LiveClock *clock, double t_s);
 /* Frames after the last one that are due by now. */

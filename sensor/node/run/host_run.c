@@ -390,6 +390,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .notes = run->view.notes,
                                   .choose = run->choose,
                                   .clock = run->clock,
+                                  .cigi = run->cigi,
                                   .save_count = o->save_count,
                                   .save = o->save,
                                   .several = o->host_count > 1,

@@ -1,6 +1,7 @@
 /* sensor/node/run/run_counters.c: the counters of run.json. */
 #include "sensor/frame/json_object.h"
 #include "sensor/instruments/radar.h"
+#include "sensor/node/cigi/cigi_node.h"
 #include "sensor/node/run/run_record_private.h"
 
 /* ---- where the values are, and those that are no plain member ------------------------------------ */
@@ -10,6 +11,24 @@ static json_t *count_of(uint64_t count) { return json_integer((json_int_t)count)
 static const void *heard_of(const void *of) { return ((const RunRecord *)of)->end->heard; }
 static const void *render_of(const void *of) { return &((const RunRecord *)of)->end->result->counters; }
 static const void *live_of(const void *of) { return ((const RunRecord *)of)->run->live; }
+
+static const void *cigi_of(const void *of) { return ((const RunRecord *)of)->run->cigi; }
+
+/* of: CigiNode. */
+static const void *next_cigi_drop(FieldAt *at, int i)
+{
+    const CigiNode *node = at->of;
+    return i < CIGI_DROP_COUNT ? field_keyed(at, cigi_drop_name((CigiDrop)i), &node->session.counters.dropped[i])
+                               : NULL;
+}
+
+static const void *next_cigi_skipped(FieldAt *at, int i)
+{
+    const CigiNode *node = at->of;
+    char            id[8];
+    snprintf(id, sizeof id, "%d", i);
+    return i < 256 ? field_keyed(at, id, &node->session.counters.skipped[i]) : NULL;
+}
 
 static const void *answers_of(const void *of)
 {
@@ -139,6 +158,7 @@ static json_t *taken_in_form(FieldAt *at)
 #define IN_HEARD(member)   FIELD_IN(heard_of, DisCounters, member)
 #define OF_RESULT(member)  FIELD_MEMBER(SessionResult, member)
 #define OF_LIVE(member)    FIELD_MEMBER(LiveCounters, member)
+#define OF_CIGI(member)    FIELD_MEMBER(CigiNode, member)
 #define OF_ANSWERS(member) FIELD_MEMBER(AnswerCounters, member)
 #define OF_STREAM(member)  FIELD_MEMBER(StreamCounters, member)
 #define OF_RENDER(member)  FIELD_MEMBER(RenderCounters, member)
@@ -175,6 +195,35 @@ static const Field live_rows[] = {
      FIELD_IN(made_ready, LiveCounters, ready_s)},
     {"files_failed", "", "", "", "frames whose files could not be written", OF_LIVE(files_failed)},
     {"files_left_out", "", "", "", "frames without files because the disk was too slow", OF_LIVE(files_left_out)},
+};
+
+static const Field cigi_drop_rows[] = {
+    {"FLAW", "", "", "when there were none", "datagrams or packets", .item = next_cigi_drop, .kind = FIELD_OF_COUNT,
+     .unless_0 = true},
+};
+
+static const Field cigi_skipped_rows[] = {
+    {"PACKET", "", "", "when there were none", "packets of this id", .item = next_cigi_skipped, .kind = FIELD_OF_COUNT,
+     .unless_0 = true},
+};
+
+static const Field cigi_rows[] = {
+    {"asked", "", "", "", "frames asked for, with a time", OF_CIGI(session.events.frames)},
+    {"without_picture", "", "", "", "frames of the host that ask for none: mode, time", OF_CIGI(session.events.idle)},
+    {"repeats", "", "", "", "Start of Frame sent again", OF_CIGI(session.events.repeats)},
+    {"repeated", "", "", "", "the host's datagrams with a frame that was known", OF_CIGI(session.events.repeated)},
+    {"old", "", "", "", "with an older frame: not used", OF_CIGI(session.events.old)},
+    {"ahead", "", "", "", "with a frame that answers no new Start of Frame", OF_CIGI(session.events.extra)},
+    {"lost", "", "", "", "numbers of its frames that did not come", OF_CIGI(session.events.lost)},
+    {"restarts", "", "", "", "how often it began anew", OF_CIGI(session.events.restarts)},
+    {"silences", "", "", "", "how often it was silent for 5 s", OF_CIGI(session.events.silences)},
+    {"time_back", "", "", "", "frames whose time was before the last", OF_CIGI(session.events.time_back)},
+    {"unstamped", "", "", "", "frames without a valid time stamp", OF_CIGI(session.events.unstamped)},
+    {"requests_lost", "", "", "", "requests that did not fit into a frame", OF_CIGI(requests_lost)},
+    {"answers_lost", "", "", "", "answers that did not fit into a datagram", OF_CIGI(session.events.unanswered)},
+    {"out_of_range", "", "", "", "entities and views refused: a value, too many", OF_CIGI(scene.refused)},
+    {"dropped", "", "", "", "refused, by reason", FIELD_OBJECT(cigi_drop_rows)},
+    {"skipped", "", "", "", "packets that are not read, by id", FIELD_OBJECT(cigi_skipped_rows)},
 };
 
 static const Field fault_rows[] = {
@@ -257,6 +306,7 @@ static const Field counter_rows[] = {
      FIELD_GET("integer", packets_lost), .channel = FIELD_COUNTERS},
     {"own", "", "", "", "datagrams of this node itself, ignored", IN_RUN(own), .channel = FIELD_COUNTERS},
     {"live", "", "", "in a replay", "counters of a live node only", .in = live_of, FIELD_OBJECT(live_rows)},
+    {"cigi", "", "", "without exercise.cigi", "of a CIGI host", .in = cigi_of, FIELD_OBJECT(cigi_rows)},
     {"answers", "", "", "without publish.detections_port", "datagrams of a recogniser", .in = answers_of,
      FIELD_OBJECT(answer_rows)},
     {"streams", "", "", "without publish.stream", "datagrams of all streams", .in = streams_of,

@@ -226,11 +226,11 @@ static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *p
     return status == STATUS_OK ? add_hashes(list, s, done) : status;
 }
 
-/* With more than one thread a frame is published while the next is rendered. */
+/* With more than one thread a frame is published while the next is rendered; a peer that waits for it has it first. */
 static Status for_replay(Session *s, FrameDone *done, unsigned raw)
 {
     const int  threads = pool_threads(s->shared->pool);
-    const bool behind = threads > 1;
+    const bool behind = threads > 1 && !s->shared->cigi;
     Consumers  first = {0}, files = {0}, all = {0};
     Status     status = behind ? pool_create(&s->publish_pool, threads) : STATUS_OK;
     Pool      *pool = behind ? s->publish_pool : s->shared->pool;

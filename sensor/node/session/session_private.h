@@ -102,6 +102,8 @@ struct HostMotion {
 Status session_host_entity(HostMotion **out, Session *s);
 /* A stand-off observer. */
 Status session_host_observer(HostMotion **out, Session *s);
+/* As a CIGI host says. */
+Status session_host_cigi(HostMotion **out, Session *s);
 
 /* Names the host of the plan, and adds it to the result's list, once. */
 void session_name_host(Session *s);
