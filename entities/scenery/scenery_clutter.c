@@ -44,6 +44,7 @@ Status clutter_add(ClutterWork *work, ClutterThing t)
     const ClutterRow *row = &work->table.row[t.row];
     const float      *size_m = work->variant[t.variant].size_m;
     if (work->things >= most_things) return STATUS_OK;
+    if (row->reach_m > 0 && hypot(t.x_m, t.y_m) > row->reach_m) return STATUS_OK;
     if (work->things == work->room) {
         const int room = work->room + work->room / 2 + 1024;
         void     *more = realloc(work->thing, (size_t)room * sizeof *work->thing);
