@@ -57,7 +57,7 @@ static void build_car(MeshBuilder *b)
     parts_box(b, 2.28, 2.325, -0.55, 0.55, 0.33, 0.52);
     lamps(b, 2.325, 0.58, 0.82, 0.55, 0.66);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
-    parts_bar(b, -2.31, 0.5, 0.28, -1.6, 0.5, 0.28, 0.03);
+    parts_bar(b, -2.31, 0.5, 0.19, -1.6, 0.5, 0.19, 0.03); /* below the floor */
     axles(b, 2, (const double[]){1.35, -1.35}, 0.785, 0.315, 0.10);
 }
 

@@ -88,9 +88,10 @@ typedef struct CultureFacts {
     int                heated;   /* 0, 1 */
     double height_m, eaves_m, part_height_m, ridge_rad, chimneys, levels, roof_height_m, roof_levels, width_m, lanes,
         direction_rad;
-    bool     bridge, hidden, ruined, marked;
-    int      unread; /* numbers that are none */
-    uint64_t id;     /* 0: none */
+    bool      bridge, hidden, ruined;
+    PlantMark mark;
+    int       unread; /* numbers that are none */
+    uint64_t  id;     /* 0: none */
 } CultureFacts;
 
 void culture_facts(CultureFacts *out, const CultureRules *rules, int tags, const char *const *name,
@@ -125,5 +126,6 @@ void culture_place(double p_m[2], const CultureFiles *from, double lon_rad, doub
 Status culture_trees_read(Culture *culture, CultureReport *report, const CultureFiles *from);
 /* The kind of plant of a name; PLANT_STANDING: none that stands by itself. */
 PlantKind culture_plant(const char *name);
+PlantMark culture_mark(const char *word); /* PLANT_MARKS: no such word */
 
 #endif
