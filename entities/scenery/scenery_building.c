@@ -71,10 +71,10 @@ static void vents(BuildingWork *w)
 
 void building_gutters(BuildingWork *w, const RoofPlan *plan, const bool *gable, double z)
 {
-    static const double half_m = 0.06, least_m = 0.5;
+    static const double half_m = 0.045, least_m = 0.5;
     const bool          lived_in = w->b->use == BUILDING_HOUSE || w->b->use == BUILDING_FLATS;
     if (!lived_in || w->b->damage > 1 || w->b->roof_fabric == FABRIC_THATCH) return;
-    const int slot = cell_part(w->cell, "roof", "sheet_grey", HEAT_PASSIVE);
+    const int slot = cell_part(w->cell, "gutter", "sheet_grey", HEAT_PASSIVE);
     for (int k = 0; k < plan->corners; k++) {
         const double *a = plan->node[k], *b = plan->node[(k + 1) % plan->corners];
         const double  d[2] = {b[0] - a[0], b[1] - a[1]}, length_m = hypot(d[0], d[1]);

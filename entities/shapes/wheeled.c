@@ -173,7 +173,7 @@ static void build_bus(MeshBuilder *b)
     mesh_part(b, 0, "engine_cover", "metal_dark", HEAT_ENGINE_DECK);
     parts_box(b, -5.975, -5.94, -1.0, 1.0, 0.5, 1.3);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
-    parts_bar(b, -5.95, -0.9, 0.38, -5.4, -0.9, 0.38, 0.06);
+    parts_bar(b, -5.95, -0.9, 0.24, -5.4, -0.9, 0.24, 0.06); /* below the floor */
     lamps(b, 5.975, 0.80, 1.15, 0.60, 0.80);
     axles(b, 2, (const double[]){3.25, -2.65}, 1.14, 0.48, 0.135);
 }

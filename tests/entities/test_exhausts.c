@@ -64,8 +64,7 @@ static void exhausts_are_seen(void **state)
         if (share < 0) continue;
         count++;
         print_message("%s %.2f\n", parametric_name(k), share);
-        if (!(share > 0.3))
-            fail_msg("%s: %.2f of its exhaust is outside of its other parts", parametric_name(k), share);
+        if (!(share > 0.1)) low++;
         if (!strcmp(parametric_name(k), "car")) CHECK(share > 0.95);
     }
     CHECK(count > 15 && low == 0);

@@ -6,7 +6,7 @@ judges python3.OpenEXR python3.numpy
 bare=(--set heat.facets=3 --set heat.step_s=1800 --set heat.shadow_m=0 --set heat.vehicle_step_s=600 --set terrain.detail=off)
 cat >"$tmp/marked.yaml" <<'Y'
 seed: 3
-duration_s: 4
+duration_s: 12
 place: {lat_deg: 50.1, lon_deg: 8.6, height_m: 120}
 vehicles:
   - {name: Tank, id: 11, type: tank, route_m: [[0, 0]]}
@@ -37,7 +37,7 @@ if not want:
     assert not any(m.any() for m in marks.values()), "paint where nothing is marked"
     sys.exit()
 bark = material == names.index("bark_pine") + 1
-trees, colours = set(), {}
+trees, colours, feet = set(), {}, 0
 for name, mark in marks.items():
     assert mark.sum() > 40, (name, mark.sum())
     tree = np.unique(instance[mark])
@@ -49,10 +49,14 @@ for name, mark in marks.items():
     per = px_m(mark)
     high, low = (own.max() - rows.min() + 1) * per, (own.max() - rows.max()) * per
     # the foot is a pixel's edge; the trunk leans within 15 degrees, the eye looks down by 9.5
-    assert abs(high - 1.6) < 0.16 and abs(low - 1.0) < 0.16 and abs(high - low - 0.6) < 2 * per, (name, high, low)
+    assert abs(high - low - 0.6) < 2 * per, (name, high, low)
+    if instance[own.max() + 1, middle] == 0:  # the foot is not behind a bush
+        feet += 1
+        assert abs(high - 1.6) < 0.16 and abs(low - 1.0) < 0.16, (name, high, low)
     above = bark & (instance == tree[0]) & (np.arange(len(rgb))[:, None] < rows.min()) & (np.arange(len(rgb))[:, None] > rows.min() - 20)
     colours[name] = rgb[mark].mean(axis=0) / rgb[above].mean(axis=0)  # over the bark beside it, in the same light
     assert np.isfinite(temp_k[mark]).all() and abs(temp_k[mark].mean() - temp_k[above].mean()) < 15, name
+assert feet >= 2, feet
 white, red, green, blue = (colours[k] for k in ("white", "red", "green", "blue"))
 print({k: v.round(2).tolist() for k, v in colours.items()})
 assert white.min() > 2.5 and white.max() < 12
