@@ -130,23 +130,17 @@ static bool bears(const Landscape *landscape, HidePose *pose, const Model *model
     return true;
 }
 
-/* Whether a vehicle would stand in or on something that is built: discs along its length, each as wide as it is, and
- * its corners. */
-static bool meets_built(const Culture *culture, const HidePose *pose, const Model *model)
+/* Whether something that is built is in a vehicle's footprint and the room about it, of which a node that shows the
+ * vehicle would take it away (terrain/culture/culture_give_way.h). */
+static bool meets_built(const Culture *culture, const WoodsPath *footprint)
 {
-    static const double room_m = 0.4;
-    const double half_m = 0.5 * model->width_m, front = (double)model->box_high[0], back = (double)model->box_low[0];
-    const double length_m = fmax(front - back - 2 * half_m, 0);
-    const int    discs = 1 + (int)ceil(length_m / half_m);
-    if (!culture) return false;
-    for (int k = 0; k < discs + 4; k++) {
-        const bool   corner = k >= discs;
-        const double along =
-            corner ? (k & 1 ? front : back) : back + half_m + (discs > 1 ? length_m * k / (discs - 1) : 0);
-        const double right = !corner ? 0 : (k - discs) & 2 ? half_m : -half_m;
-        if (culture_is_in_way(culture, pose->p_enu[0] + along * pose->nose[0] + right * pose->nose[1],
-                              pose->p_enu[1] + along * pose->nose[1] - right * pose->nose[0],
-                              corner ? room_m : half_m + room_m))
+    static const double step_m = 0.5, more_m = 0.3; /* more: half a step, and what reports are off */
+    const double        dx = footprint->b_m[0] - footprint->a_m[0], dy = footprint->b_m[1] - footprint->a_m[1];
+    const int           steps = (int)ceil(hypot(dx, dy) / step_m);
+    for (int k = 0; culture && k <= steps; k++) {
+        const double t = steps ? (double)k / steps : 0;
+        if (culture_is_in_way(culture, footprint->a_m[0] + t * dx, footprint->a_m[1] + t * dy,
+                              footprint->half_m + more_m))
             return true;
     }
     return false;
@@ -291,10 +285,10 @@ bool hide_find(HideFound *out, const HideGround *ground, const HideWish *wish, c
     for (int n = 0; n < candidates && fit < kept_most; n++) {
         HideFound found = {0};
         if (!draw_pose(&found.pose, &found.heading_rad, wish, ground, sight, n)) continue;
-        if (meets_built(ground->culture, &found.pose, wish->shape.model)) continue;
         if (wish->beside && meets_box(wish->beside, &found.pose, wish->shape.model)) continue;
         const WoodsPath footprint = woods_footprint(found.pose.p_enu, found.pose.nose, wish->shape.model->box_high[0],
                                                     wish->shape.model->box_low[0], wish->shape.model->width_m);
+        if (meets_built(ground->culture, &footprint)) continue;
         if (!is_of_kind(wish->kind, ground, found.pose.p_enu, &footprint)) continue;
         if (!bears(ground->landscape, &found.pose, wish->shape.model)) continue;
         if (wish->kind == SCENARIO_HIDE_HOLLOW && !is_hollow(ground->landscape, found.pose.p_enu)) continue;

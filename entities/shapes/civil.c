@@ -295,27 +295,16 @@ static void build_container(MeshBuilder *b)
 
 Status parametric_civil(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        void (*build)(MeshBuilder *b);
-    } kinds[] = {
-        {"van", build_van},
-        {"lorry", build_lorry},
-        {"tractor", build_tractor},
-        {"combine", build_combine},
-        {"excavator", build_excavator},
-        {"generator", build_generator},
-        {"farm_trailer", build_farm_trailer},
-        {"wreck", build_wreck},
-        {"container", build_container},
+    static const ShapeKind kinds[] = {
+        {"van", build_van, 0},
+        {"lorry", build_lorry, 0},
+        {"tractor", build_tractor, 0},
+        {"combine", build_combine, 0},
+        {"excavator", build_excavator, 0},
+        {"generator", build_generator, 0},
+        {"farm_trailer", build_farm_trailer, 0},
+        {"wreck", build_wreck, 0},
+        {"container", build_container, 0},
     };
-    int k = 0;
-    while (strcmp(kinds[k].name, name) != 0) k++;
-    MeshBuilder *b = mesh_builder_create(name, sag_m);
-    if (!b) return STATUS_NO_MEMORY;
-    mesh_node(b, "chassis", -1, 0, 0, 0);
-    kinds[k].build(b);
-    const Status status = mesh_builder_finish(out, b);
-    if (status == STATUS_OK) out->sag_m = sag_m;
-    return status;
+    return parts_build(out, kinds, name, "chassis", sag_m);
 }

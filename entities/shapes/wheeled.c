@@ -349,30 +349,18 @@ static void build_rocket_truck(MeshBuilder *b)
 
 Status parametric_wheeled(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        void (*build)(MeshBuilder *b);
-    } kinds[] = {
-        {"car", build_car},
-        {"jeep", build_jeep},
-        {"motorcycle", build_motorcycle},
-        {"robot", build_robot},
-        {"bus", build_bus},
-        {"carrier_wheeled", build_carrier_wheeled},
-        {"truck_heavy", build_truck_heavy},
-        {"semi_trailer", build_semi_trailer},
-        {"trailer", build_trailer},
-        {"shelter", build_shelter},
-        {"rocket_truck", build_rocket_truck},
+    static const ShapeKind kinds[] = {
+        {"car", build_car, 0},
+        {"jeep", build_jeep, 0},
+        {"motorcycle", build_motorcycle, 0.002},
+        {"robot", build_robot, 0.002},
+        {"bus", build_bus, 0},
+        {"carrier_wheeled", build_carrier_wheeled, 0},
+        {"truck_heavy", build_truck_heavy, 0},
+        {"semi_trailer", build_semi_trailer, 0},
+        {"trailer", build_trailer, 0},
+        {"shelter", build_shelter, 0},
+        {"rocket_truck", build_rocket_truck, 0},
     };
-    int k = 0;
-    while (strcmp(kinds[k].name, name) != 0) k++;
-    const bool   small = kinds[k].build == build_robot || kinds[k].build == build_motorcycle;
-    MeshBuilder *b = mesh_builder_create(name, small ? fmin(sag_m, 0.002) : sag_m);
-    if (!b) return STATUS_NO_MEMORY;
-    mesh_node(b, "chassis", -1, 0, 0, 0);
-    kinds[k].build(b);
-    const Status status = mesh_builder_finish(out, b);
-    if (status == STATUS_OK) out->sag_m = sag_m;
-    return status;
+    return parts_build(out, kinds, name, "chassis", sag_m);
 }

@@ -4,7 +4,7 @@
 
 #include "terrain/culture/culture_give_way.h"
 
-enum { drives = 60, pieces = 40 };
+enum { drives = 24, pieces = 40 };
 
 static double point_m(const double p[2], const double a[2], const double b[2])
 {
