@@ -21,8 +21,7 @@ static void mark_along(CultureMarks *marks, const Culture *c, const DrivenPath *
 static double away_m(const DrivenPath *path, const double p[2])
 {
     const double dx = path->b_m[0] - path->a_m[0], dy = path->b_m[1] - path->a_m[1], square = dx * dx + dy * dy;
-    const double t =
-        square > 0 ? clamp(((p[0] - path->a_m[0]) * dx + (p[1] - path->a_m[1]) * dy) / square, 0, 1) : 0;
+    const double t = square > 0 ? clamp(((p[0] - path->a_m[0]) * dx + (p[1] - path->a_m[1]) * dy) / square, 0, 1) : 0;
     return hypot(path->a_m[0] + t * dx - p[0], path->a_m[1] + t * dy - p[1]);
 }
 

@@ -53,7 +53,8 @@ static void report(Choices *choices, const FrameScenery *s, const Config *config
         choice_add(choices, "buildings: %d invented, %d walls, fences and lines, %d other works (terrain.buildings)",
                    n.buildings, n.lines, n.points);
     if (s->gave_way > 0)
-        choice_add(choices, "buildings: %d records are not there for what the log's vehicles drive through (terrain.place)",
+        choice_add(choices,
+                   "buildings: %d records are not there for what the log's vehicles drive through (terrain.place)",
                    s->gave_way);
     if (s->plan.from == CULTURE_FROM_SEED && !landscape_is_synthetic(landscape))
         choice_add(choices, "buildings: none are invented on terrain from files (terrain.buildings)");
