@@ -143,7 +143,7 @@ static Status add_building(Import *i)
     const double area_m2 = fabs(area_of(p, n));
     const double base_m = culture_floor_m(i->from, p, n);
     if (isnan(base_m)) return leave(i, CULTURE_LEFT_OUTSIDE);
-    culture_building_make(&b, &from, &mended, &i->facts, p, n, area_m2);
+    culture_building_make(&b, &from, &mended, &i->facts, p, n, area_m2, courtyards > 0);
     b.id = id_of(i), b.base_m = (float)base_m;
     const int    before = i->culture->buildings, left = i->culture->left_out;
     const Status status = culture_add_building(i->culture, &b, p, n);

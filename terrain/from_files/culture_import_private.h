@@ -109,9 +109,9 @@ static const uint64_t culture_mix_seed = 0xcbf29ce484222325u;
 /* ---- culture_building.c ---- */
 
 /* All of a building but its outline, place and id, from its facts and its outline in ENU. mended: how many numbers
- * could not be a building's and were left aside. */
+ * could not be a building's and were left aside. hollow: the outline goes round courtyards. */
 void culture_building_make(Building *out, HeightFrom *from, int *mended, const CultureFacts *facts,
-                           const double (*corner_m)[2], int corners, double area_m2);
+                           const double (*corner_m)[2], int corners, double area_m2, bool hollow);
 /* Sides of the smallest rectangle about an outline that has an edge of it for a side, longer first, and the direction
  * of the longer, counter-clockwise from east. */
 void culture_rectangle(double side_m[2], double *along_rad, const double (*corner_m)[2], int corners);

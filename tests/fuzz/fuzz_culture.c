@@ -92,7 +92,7 @@ static void make(int tags, const char *const *name, const char *const *value)
     if (f.use >= BUILDING_USES || f.roof >= ROOF_SHAPES || f.wall >= FABRICS || f.cover >= FABRICS ||
         f.plant >= PLANT_STANDING || f.ground >= SURFACE_COUNT)
         abort();
-    culture_building_make(&b, &from, &mended, &f, p, 4, 108);
+    culture_building_make(&b, &from, &mended, &f, p, 4, 108, false);
     if (from >= HEIGHTS_FROM || b.levels < 1 || culture_add_building(&c, &b, p, 4) != STATUS_OK || c.buildings != 1)
         abort();
     culture_free(&c);

@@ -247,6 +247,28 @@ static void courtyards_are_open(void **state)
     CHECK_NEAR(0.5 * twice / square_m2, 0.955, 0.004);
     CHECK(c.building[0].id != c.building[1].id);
     culture_free(&c);
+    /* 44 x 36 m about a courtyard of 22 x 14 m: 1276 m2 between 232 m of walls, wings of 10.6 m, whose roofs rise by
+     * 0.84 of half of that, less the two sides of the slit; without the courtyard by 0.84 of 18 m, 12 at most */
+    const double square[8][2] = {{-22, -18}, {22, -18}, {22, 18}, {-22, 18}, {-11, -7}, {11, -7}, {11, 7}, {-11, 7}};
+    char         block[2048];
+    int          n = snprintf(block, sizeof block,
+                              "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{"
+                                       "\"building\":\"apartments\",\"roof:shape\":\"gabled\",\"building:levels\":\"3\"},\"geometry\":{"
+                                       "\"type\":\"Polygon\",\"coordinates\":[[");
+    for (int k = 0; k < 10; k++) {
+        const double *p = square[k < 5 ? k % 4 : 4 + (k - 5) % 4];
+        n += snprintf(block + n, sizeof block - (size_t)n, "%s[%.9f,%.9f]",
+                      k == 5 ? "],["
+                      : k    ? ","
+                             : "",
+                      13.02 + p[0] / (111320 * cos(47.05 * pi_rad / 180)), 47.05 + p[1] / 111170);
+    }
+    snprintf(block + n, sizeof block - (size_t)n, "]]}}]}");
+    save("block.geojson", block);
+    assert_int_equal(open_names(&c, &r, "block.geojson", NULL), STATUS_OK);
+    CHECK(c.buildings == 1 && r.courtyards == 1 && c.building[0].roof == ROOF_GABLED);
+    CHECK_NEAR((double)(c.building[0].ridge_m - c.building[0].eaves_m), 0.42 * 2 * 1276 / (232 + 2 * 11), 0.1);
+    culture_free(&c);
 }
 
 /* ---- trees ------------------------------------------------------------------------------------------- */

@@ -244,7 +244,7 @@ static Building building_of(const char *tags, double length_m, double width_m, H
     const CultureFacts f = facts_of(tags);
     Building           b;
     *mended = 0;
-    culture_building_make(&b, from, mended, &f, p, 4, length_m * width_m);
+    culture_building_make(&b, from, mended, &f, p, 4, length_m * width_m, false);
     return b;
 }
 
