@@ -1,92 +1,52 @@
 /* render/probe_heat.c: `pitviper probe heat-ground`: the ground's heat for rows of CSV, as frames have it, without a
  * scene.
- *
- * Each local day (by the sun's mean time at the place) is an exercise of its own: warmed up over the two days before
- * its midnight, so that a row's answer depends on no other row. Rows in the order of time are answered without starting
+ * Rows in the order of time are answered without starting
  * again. */
 
-#include "render/probe_private.h"
-#include "render/frame/world.h"
+#include "render/probe_day_private.h"
 #include "terrain/probe.h"
 
 #include <stdlib.h>
 
 typedef struct HeatProbe {
-    Materials      materials;
-    GroundKinds    kinds;
-    PlanckTable   *planck[2];
-    Atmosphere    *atmosphere;
-    WeatherCourse *course;
-    HeatDrive      drive;
-    Arena         *arena;
-    Pool          *pool;
-    Heat          *heat; /* of the day of drive.exercise_s; NULL: none yet */
+    ProbeDay day;
+    Pool    *pool;
+    Heat    *heat; /* of the day of day.drive.exercise_s; NULL: none yet */
 } HeatProbe;
-
-static const double day_s = 86400;
 
 void heat_probe_close(void *state)
 {
     HeatProbe *p = state;
     heat_destroy(p->heat);
     pool_destroy(p->pool);
-    arena_destroy(p->arena);
-    weather_course_close(p->course);
-    atmosphere_close(p->atmosphere);
-    for (int k = 0; k < 2; k++) planck_table_destroy(p->planck[k]);
-    materials_close(&p->materials);
+    probe_day_close(&p->day);
     free(p);
-}
-
-static Status open_tables(HeatProbe *p)
-{
-    char materials[512], surfaces[512], ground[512];
-    if (!etc_path(materials, sizeof materials, "materials.csv") ||
-        !etc_path(surfaces, sizeof surfaces, "surfaces.csv") || !etc_path(ground, sizeof ground, "ground_heat.csv")) {
-        log_error("probe: path of the tables is too long; set PITVIPER_ETC to a shorter one");
-        return STATUS_BAD_VALUE;
-    }
-    Status status = materials_open(&p->materials, materials, surfaces, NULL);
-    if (status == STATUS_OK) status = ground_kinds_open(&p->kinds, ground, &p->materials);
-    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        const SpectralBand band = channel_band((ChannelPlace)(SPECTRAL_MWIR + k));
-        status = planck_table_seen(&p->planck[k], &band);
-    }
-    if (status == STATUS_OK) status = atmosphere_open(&p->atmosphere, "us1976");
-    return status;
 }
 
 Status heat_probe_open(void **state, int argc, char **argv)
 {
     HeatProbe *p = calloc(1, sizeof *p);
     if (!p) return STATUS_NO_MEMORY;
-    Status status = probe_weather(&p->course, &p->drive.place, argc, argv);
-    if (status == STATUS_OK) status = open_tables(p);
+    Status status = probe_day_open(&p->day, argc, argv);
     if (status == STATUS_OK)
         status = pool_create(&p->pool, thread_processors() < ground_kinds ? thread_processors() : ground_kinds);
-    if (status == STATUS_OK && !(p->arena = arena_create())) status = STATUS_NO_MEMORY;
-    if (status != STATUS_OK) {
-        heat_probe_close(p);
-        return status;
-    }
-    p->drive.course = p->course;
-    p->drive.source = (AirSource){p->atmosphere, p->planck[0], p->planck[1], 0, p->drive.place.h_m};
-    *state = p;
-    return STATUS_OK;
+    if (status == STATUS_OK) *state = p;
+    else heat_probe_close(p);
+    return status;
 }
 
 /* The heat of the day of a time. */
 static Status warm(HeatProbe *p, double unix_s)
 {
-    const double east_s = day_s * p->drive.place.lon_rad / (2 * pi_rad),
-                 begin_s = floor((unix_s + east_s) / day_s) * day_s - east_s;
-    if (p->heat && p->drive.exercise_s == begin_s) return STATUS_OK;
+    HeatDrive   *drive = &p->day.drive;
+    const double begin_s = probe_midnight_s(unix_s, drive->place.lon_rad);
+    if (p->heat && drive->exercise_s == begin_s) return STATUS_OK;
     heat_destroy(p->heat);
     p->heat = NULL;
-    p->drive.exercise_s = begin_s;
+    drive->exercise_s = begin_s;
     HeatConfig config = heat_default_config();
-    config.unix_s = begin_s, config.weather = world_heat_weather, config.user = &p->drive, config.pool = p->pool;
-    return heat_create(&p->heat, &p->kinds, &config, NULL, 0);
+    config.unix_s = begin_s, config.weather = world_heat_weather, config.user = drive, config.pool = p->pool;
+    return heat_create(&p->heat, &p->day.ground, &config, NULL, 0);
 }
 
 static double or_zero(const ProbeValue *value) { return isnan(value->number) ? 0 : value->number; }
@@ -108,12 +68,11 @@ static const char *balance(ProbeValue *out, const GroundColumn *ground, const Gr
 
 const char *heat_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
-    static const double least_s = -2208988800, most_s = 4102444800; /* 1900, 2100 */
-    HeatProbe          *p = state;
-    const double        unix_s = in[0].number, slope_deg = or_zero(&in[2]), aspect_rad = or_zero(&in[3]) * rad_per_deg;
-    const double        shade = or_zero(&in[4]), depth_m = or_zero(&in[5]);
-    const int           kind = ground_kind_find(in[1].text);
-    if (!(unix_s >= least_s && unix_s < most_s)) return "unix_s must be a time in 1900 .. 2100";
+    HeatProbe   *p = state;
+    const double unix_s = in[0].number, slope_deg = or_zero(&in[2]), aspect_rad = or_zero(&in[3]) * rad_per_deg;
+    const double shade = or_zero(&in[4]), depth_m = or_zero(&in[5]);
+    const int    kind = ground_kind_find(in[1].text);
+    if (probe_time_fault(unix_s)) return probe_time_fault(unix_s);
     if (kind < 0) return "surface is no row of etc/ground_heat.csv";
     if (!(slope_deg >= 0 && slope_deg <= 90)) return "slope_deg must be in 0 .. 90";
     if (!(fabs(aspect_rad) <= 4 * pi_rad)) return "aspect_deg must be within 720";
@@ -124,8 +83,9 @@ const char *heat_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
     HeatNow      *now;
     GroundColumn  ground;
     GroundWeather w;
-    arena_reset(p->arena);
-    if (warm(p, unix_s) != STATUS_OK || heat_now(&now, p->heat, unix_s, p->arena) != STATUS_OK) return "out of memory";
+    arena_reset(p->day.arena);
+    if (warm(p, unix_s) != STATUS_OK || heat_now(&now, p->heat, unix_s, p->day.arena) != STATUS_OK)
+        return "out of memory";
     heat_level(&ground, p->heat, kind, now->share);
     const double bottom_m = ground.column->depth_m[ground.column->nodes - 1];
     if (!(depth_m >= 0 && depth_m <= bottom_m)) {
@@ -140,7 +100,7 @@ const char *heat_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
     const double   surface_k = heat_ground_k(now, kind, e.n_enu, shade, 1, 1);
     out[0].number = depth_m > 0 ? column_temp_k(&ground.state, ground.column, depth_m) : surface_k;
     ground.state.temp_k[0] = surface_k; /* its water is that of level ground */
-    world_heat_weather(&w, unix_s, &p->drive);
+    world_heat_weather(&w, unix_s, &p->day.drive);
     return balance(out, &ground, &w, &e);
 }
 
@@ -228,8 +188,7 @@ static Status open_world(NodeProbe *p, const char *name)
 /* The heat of the day of a time. */
 static Status warm_entity(NodeProbe *p, double unix_s)
 {
-    const double east_s = day_s * p->place.lon_rad / (2 * pi_rad);
-    const double begin_s = floor((unix_s + east_s) / day_s) * day_s - east_s;
+    const double begin_s = probe_midnight_s(unix_s, p->place.lon_rad);
     HeatConfig   config = heat_default_config();
     if (p->begin_s == begin_s) return STATUS_OK;
     keep_course(p);
@@ -286,7 +245,6 @@ static Status begin(Snapshot *snapshot, SnapshotEntity *entity, NodeProbe *p, do
 
 const char *heat_node_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
-    static const double least_s = -2208988800, most_s = 4102444800; /* 1900, 2100 */
     static const double up[3] = {0, 0, 1}, origin_enu[3] = {0, 0, 0};
     NodeProbe          *p = state;
     const double        unix_s = in[0].number, heading_deg = isnan(in[3].number) ? 270 : in[3].number;
@@ -296,7 +254,7 @@ const char *heat_node_probe_row(void *state, const ProbeValue *in, ProbeValue *o
     SnapshotEntity      entity;
     HeatScene          *scene;
     double              lifted_k;
-    if (!(unix_s >= least_s && unix_s < most_s)) return "unix_s must be a time in 1900 .. 2100";
+    if (probe_time_fault(unix_s)) return probe_time_fault(unix_s);
     if (!(fabs(heading_deg) <= 720)) return "heading_deg must be within 720";
     if (!(drive[1] >= 0 && drive[1] <= 1)) return "engine must be in 0 .. 1";
     if (!(drive[2] >= 0 && drive[2] <= 100)) return "speed_mps must be in 0 .. 100";

@@ -17,22 +17,34 @@ static const TableColumn type_columns[] = {{"type", .type = TABLE_CELL, TABLE_AT
                                            {"model", .type = TABLE_CELL, TABLE_AT(TypeRow, model)}};
 static const TableFormat type_format = {"catalog", type_columns, 2, .next = "etc/catalog.csv explains the columns"};
 
-/* The first row of the catalog with this model; its wildcards become 0. */
+/* Whether a row's type is of any country: of a whole category, not of one vehicle that looks like it. */
+static bool is_of_any_country(const char *type)
+{
+    for (int dots = 0; *type && dots < 2; type++) dots += *type == '.';
+    return *type == '*';
+}
+
+/* The first row of the catalog with this model that is of any country, else the first; its wildcards become 0. */
 static bool type_of_model(DisEntityType *out, const TableRows *catalog, const char *model)
 {
+    int best = -1;
     for (int row = 0; row < catalog->table.rows; row++) {
         if (strcmp(table_rows_text(catalog, row, "model"), model) != 0) continue;
-        char text[scenario_type_size], *to = text;
-        int  fields = 1;
-        for (const char *at = table_rows_text(catalog, row, "type"); *at && to < text + sizeof text - 16; at++) {
-            fields += *at == '.';
-            *to++ = *at == '*' ? '0' : *at;
-        }
-        for (; fields < 7; fields++) *to++ = '.', *to++ = '0';
-        *to = 0;
-        return scenario_type_parse(out, text);
+        if (best < 0) best = row;
+        if (!is_of_any_country(table_rows_text(catalog, row, "type"))) continue;
+        best = row;
+        break;
     }
-    return false;
+    if (best < 0) return false;
+    char text[scenario_type_size], *to = text;
+    int  fields = 1;
+    for (const char *at = table_rows_text(catalog, best, "type"); *at && to < text + sizeof text - 16; at++) {
+        fields += *at == '.';
+        *to++ = *at == '*' ? '0' : *at;
+    }
+    for (; fields < 7; fields++) *to++ = '.', *to++ = '0';
+    *to = 0;
+    return scenario_type_parse(out, text);
 }
 
 static bool find_type(DisEntityType *out, const Cast *cast, const TableRows *catalog, int line, const char *list,
@@ -259,7 +271,7 @@ static bool needs_models(const Scenario *s)
     for (int i = 0; i < s->group_count; i++)
         if (s->group[i].turret != SCENARIO_TURRET_NONE || s->group[i].hide != SCENARIO_HIDE_NONE || s->group[i].over)
             return true;
-    return false;
+    return s->ground.buildings; /* which make room for them */
 }
 
 static Status fill(Cast *cast, int *ids, int *first, const HideJudge *judge)

@@ -1,6 +1,7 @@
 /* entities/exercise/cast_ground.c: the ground of an exercise, from files or synthetic, and the routes over it. */
 
 #include "entities/exercise/cast_private.h"
+#include "terrain/culture/culture_invented.h"
 #include "terrain/from_files/elevation_import.h"
 #include "terrain/ground/placed.h"
 #include "terrain/store/store.h"
@@ -59,6 +60,12 @@ Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
         status = landscape_placed(&ground.stored, &land, &origin, NULL);
         if (status != STATUS_OK) return status;
         ground.real = true;
+        const CultureConfig all = {.seed = land.seed, .half_width_m = 1e6};
+        if (scenario->ground.buildings) status = culture_invent(&ground.culture, &ground.stored, &all);
+        if (status != STATUS_OK) {
+            landscape_destroy(&ground.stored);
+            return status;
+        }
     }
     if (*scenario->ground.store) {
         status = store_open_landscape(&ground.stored, scenario->ground.store, (uint64_t)scenario->seed);
@@ -93,6 +100,7 @@ void exercise_ground_destroy(ExerciseGround *ground)
 {
     elevation_destroy(&ground->elevation);
     landscape_destroy(&ground->stored);
+    culture_free(&ground->culture);
     *ground = (ExerciseGround){0};
 }
 

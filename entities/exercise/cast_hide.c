@@ -2,6 +2,8 @@
 #include "entities/exercise/cast_private.h"
 
 #include "entities/exercise/hide.h"
+#include "terrain/culture/culture_give_way.h"
+#include "terrain/culture/culture_ground.h"
 
 #include <stdlib.h>
 
@@ -47,7 +49,7 @@ typedef struct Hiding {
     const Catalog *catalog;
     HideSight      sight;
     double (*taken)[2]; /* [cast->hidden_count] of the landscape */
-    const HideJudge *judge;
+    HideWorld world;
 } Hiding;
 
 static double planned_of(const Scenario *s, const ScenarioGroup *g, int entity)
@@ -118,8 +120,7 @@ static Status hide_group(Hiding *h, int group)
         double     about_land[3];
         cast_pose(&pose, cast, entity, 0); /* its place in the formation */
         to_landscape(about_land, cast, pose.p_enu[0], pose.p_enu[1]);
-        status = hide_ground_open(&ground, &cast->ground.stored, (uint64_t)s->ground.seed, about_land,
-                                  g->hide_m + sight_m, h->judge);
+        status = hide_ground_open(&ground, &h->world, about_land, g->hide_m + sight_m);
         if (status == STATUS_OK) status = hide_one(h, &ground, group, entity, about_land);
         hide_ground_close(&ground);
     }
@@ -146,10 +147,62 @@ static void lay_nets(Hiding *h, int group)
     }
 }
 
+/* What is built makes room for vehicles that stand where they are told or drive, as it does in a node that replays
+ * their log. */
+static Status clear_routes(Cast *cast, const Catalog *catalog)
+{
+    enum { most_steps = 4000 };
+    static const double step_s = 0.5, room_m = 0.25;
+    const int           steps = (int)clamp(cast->scenario->duration_s / step_s, 1, most_steps);
+    const double        dt_s = cast->scenario->duration_s / steps;
+    DrivenPath         *path = malloc((size_t)steps * sizeof *path);
+    Status              status = path ? STATUS_OK : STATUS_NO_MEMORY;
+    int                 all = 0;
+    for (int n = 0; n < cast->entity_count && status == STATUS_OK; n++) {
+        const CastEntity *e = &cast->entity[n];
+        const Model      *m = model_of(catalog, e->type);
+        double            last[3];
+        int               count = 0, taken;
+        CastPose          pose;
+        if (e->carriage != CARRIAGE_LAND || cast->scenario->group[e->group].hide != SCENARIO_HIDE_NONE ||
+            cast->scenario->group[e->group].over)
+            continue;
+        for (int k = 0; k <= steps; k++) {
+            double here[3];
+            cast_pose(&pose, cast, n, k * dt_s);
+            to_landscape(here, cast, pose.p_enu[0], pose.p_enu[1]);
+            if (k == 0) memcpy(last, here, sizeof last);
+            const bool moved = hypot(here[0] - last[0], here[1] - last[1]) > 0.5;
+            if (k > 0 && !moved && k < steps) continue;
+            if (count < steps)
+                path[count++] =
+                    (DrivenPath){{last[0], last[1]},
+                                 {here[0], here[1]},
+                                 (moved ? 0.5 * m->width_m : 0.5 * hypot(m->length_m, m->width_m)) + room_m};
+            memcpy(last, here, sizeof last);
+        }
+        status = culture_give_way(&cast->ground.culture, &taken, path, count);
+        all += taken;
+    }
+    free(path);
+    if (all > 0)
+        log_warn("scenario: %d buildings, walls and other works make room for vehicles at and along route_m; the node "
+                 "that shows them leaves them out too",
+                 all);
+    return status;
+}
+
 Status cast_hide(Cast *cast, const int *ids, const int *first, const Catalog *catalog, const HideJudge *judge)
 {
     const Scenario *s = cast->scenario;
-    Hiding          h = {cast, ids, first, catalog, hide_sight(s), NULL, judge};
+    const Culture  *culture = cast->ground.culture.index ? &cast->ground.culture : NULL;
+    Hiding          h = {cast,
+                         ids,
+                         first,
+                         catalog,
+                         hide_sight(s),
+                         NULL,
+                         {&cast->ground.stored, (uint64_t)s->ground.seed, culture, judge}};
     Status          status = STATUS_OK;
     int             hidden = 0;
     for (int g = 0; g < s->group_count; g++)
@@ -157,6 +210,8 @@ Status cast_hide(Cast *cast, const int *ids, const int *first, const Catalog *ca
     cast->hidden = calloc((size_t)hidden + 1, sizeof *cast->hidden);
     h.taken = calloc((size_t)hidden + 1, sizeof *h.taken);
     if (!cast->hidden || !h.taken) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK && culture) status = clear_routes(cast, catalog);
+    if (status == STATUS_OK && culture) culture_lay(&cast->ground.stored, culture);
     for (int g = 0; g < s->group_count && status == STATUS_OK; g++) status = hide_group(&h, g);
     for (int g = 0; g < s->group_count && status == STATUS_OK; g++) lay_nets(&h, g);
     free(h.taken);

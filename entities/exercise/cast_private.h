@@ -13,6 +13,7 @@
 #include "entities/motion/dead_reckoning.h"
 #include "terrain/earth/geodesy.h"
 #include "terrain/elevation/elevation.h"
+#include "terrain/culture/culture.h"
 #include "terrain/ground/landscape.h"
 
 /* ---- ground: cast_ground.c ---------------------------------------------------------------- */
@@ -28,7 +29,8 @@ typedef struct ExerciseGround {
     bool       real;
     double     smooth_m;
     Elevation  elevation;
-    Landscape  stored; /* landscape of a terrain store, in its own frame; cover NULL: none */
+    Landscape  stored;  /* landscape of a terrain store, in its own frame; cover NULL: none */
+    Culture    culture; /* what is built on it, of ground.buildings; zeroes: nothing */
 } ExerciseGround;
 
 /* Reads the files of ground.elevation. Failures are logged. */

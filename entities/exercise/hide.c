@@ -95,6 +95,8 @@ static bool is_of_kind(enum ScenarioHide kind, const HideGround *ground, const d
         return a.rows >= 4 && a.trees <= 4;
     case SCENARIO_HIDE_HOLLOW: /* asked later, of a height that is known */
     case SCENARIO_HIDE_BESIDE:
+    case SCENARIO_HIDE_BUILDING: /* drawn beside one */
+    case SCENARIO_HIDE_WALL:
     case SCENARIO_HIDE_NONE:
         break;
     }
@@ -126,6 +128,56 @@ static bool bears(const Landscape *landscape, HidePose *pose, const Model *model
     for (int k = 0; k < 5; k++)
         if (surface[k] == SURFACE_NONE || surface[k] == SURFACE_WATER || surface[k] == SURFACE_ROAD) return false;
     return true;
+}
+
+/* Whether something that is built is in a vehicle's footprint and the room about it, of which a node that shows the
+ * vehicle would take it away (terrain/culture/culture_give_way.h). */
+static bool meets_built(const Culture *culture, const WoodsPath *footprint)
+{
+    static const double step_m = 0.5, more_m = 0.3; /* more: half a step, and what reports are off */
+    const double        dx = footprint->b_m[0] - footprint->a_m[0], dy = footprint->b_m[1] - footprint->a_m[1];
+    const int           steps = (int)ceil(hypot(dx, dy) / step_m);
+    for (int k = 0; culture && k <= steps; k++) {
+        const double t = steps ? (double)k / steps : 0;
+        if (culture_is_in_way(culture, footprint->a_m[0] + t * dx, footprint->a_m[1] + t * dy,
+                              footprint->half_m + more_m))
+            return true;
+    }
+    return false;
+}
+
+/* A piece of an outline or wall near the place, by chance, and a place beyond it as the observer sees it. */
+static bool place_behind(double p_m[2], const HideWish *wish, const HideGround *ground, const HideSight *sight,
+                         int candidate)
+{
+    enum { looks = 400 };
+    const Culture *c = ground->culture;
+    const bool     wall = wish->kind == SCENARIO_HIDE_WALL;
+    const int      records = !c ? 0 : wall ? c->lines : c->buildings;
+    const double   level = fmax(hypot(sight->d_enu[0], sight->d_enu[1]), 1e-9);
+    for (int look = 0; look < looks && records > 0; look++) {
+        const double at =
+            random_uniform(wish->seed, 13, (uint32_t)wish->number, (uint64_t)candidate * looks + (uint64_t)look);
+        const int n = (int)fmin(at * records, records - 1);
+        if (wall && c->line[n].kind != CULTURE_WALL) continue;
+        const int first = wall ? c->line[n].first_corner : c->building[n].first_corner;
+        const int corners = wall ? c->line[n].corners : c->building[n].corners;
+        if (hypot(c->corner_m[first][0] - wish->about_m[0], c->corner_m[first][1] - wish->about_m[1]) > wish->within_m)
+            continue;
+        const int     k = (int)fmin(drawn(wish, candidate, 0) * (corners - wall), corners - wall - 1);
+        const double *a = c->corner_m[first + k], *b = c->corner_m[first + (k + 1) % corners];
+        const double  long_m = hypot(b[0] - a[0], b[1] - a[1]);
+        if (!(long_m > 0)) return false;
+        double out[2] = {(b[1] - a[1]) / long_m, (a[0] - b[0]) / long_m}; /* of outlines; walls have two sides */
+        double away = -(out[0] * sight->d_enu[0] + out[1] * sight->d_enu[1]) / level;
+        if (wall && away < 0) out[0] = -out[0], out[1] = -out[1], away = -away;
+        if (away < 0.1) return false; /* on the side that the observer sees */
+        const double share = 1.2 * drawn(wish, candidate, 1) - 0.1, half_m = 0.5 * wish->shape.model->width_m;
+        const double off_m = half_m + 0.6 + (wall ? 4 : 9) * drawn(wish, candidate, 3);
+        for (int i = 0; i < 2; i++) p_m[i] = a[i] + share * (b[i] - a[i]) + off_m * out[i];
+        return true;
+    }
+    return false;
 }
 
 /* Beyond the box as the observer sees it, a metre or more off, and to a side so that some of it shows. */
@@ -165,11 +217,14 @@ static bool meets_box(const HideBox *box, const HidePose *pose, const Model *mod
     return false;
 }
 
-static bool draw_pose(HidePose *pose, double *heading_rad, const HideWish *wish, const HideSight *sight, int candidate)
+static bool draw_pose(HidePose *pose, double *heading_rad, const HideWish *wish, const HideGround *ground,
+                      const HideSight *sight, int candidate)
 {
     double p_m[2];
     if (wish->kind == SCENARIO_HIDE_BESIDE) {
         place_beside(p_m, wish, sight, candidate);
+    } else if (wish->kind == SCENARIO_HIDE_BUILDING || wish->kind == SCENARIO_HIDE_WALL) {
+        if (!place_behind(p_m, wish, ground, sight, candidate)) return false;
     } else { /* evenly over the circle */
         const double r_m = wish->within_m * sqrt(drawn(wish, candidate, 0));
         const double a_rad = 2 * pi_rad * drawn(wish, candidate, 1);
@@ -229,10 +284,11 @@ bool hide_find(HideFound *out, const HideGround *ground, const HideWish *wish, c
     int        fit = 0, count = 0;
     for (int n = 0; n < candidates && fit < kept_most; n++) {
         HideFound found = {0};
-        if (!draw_pose(&found.pose, &found.heading_rad, wish, sight, n)) continue;
+        if (!draw_pose(&found.pose, &found.heading_rad, wish, ground, sight, n)) continue;
         if (wish->beside && meets_box(wish->beside, &found.pose, wish->shape.model)) continue;
         const WoodsPath footprint = woods_footprint(found.pose.p_enu, found.pose.nose, wish->shape.model->box_high[0],
                                                     wish->shape.model->box_low[0], wish->shape.model->width_m);
+        if (meets_built(ground->culture, &footprint)) continue;
         if (!is_of_kind(wish->kind, ground, found.pose.p_enu, &footprint)) continue;
         if (!bears(ground->landscape, &found.pose, wish->shape.model)) continue;
         if (wish->kind == SCENARIO_HIDE_HOLLOW && !is_hollow(ground->landscape, found.pose.p_enu)) continue;

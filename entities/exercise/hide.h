@@ -9,20 +9,30 @@
 #ifndef ENTITIES_EXERCISE_HIDE_H
 #define ENTITIES_EXERCISE_HIDE_H
 
+#include "entities/exercise/hide_built.h"
 #include "entities/exercise/hide_judge.h"
 #include "entities/exercise/scenario.h"
 #include "entities/models/model.h"
 
-/* The plants of a ground near a place, and what else of it a hide asks for. */
+/* All of it, which outlives the grounds about places. */
+typedef struct HideWorld {
+    const Landscape *landscape;
+    uint64_t         seed;
+    const Culture   *culture; /* what is built, indexed, and laid on the landscape; NULL: nothing */
+    const HideJudge *judge;   /* NULL: there is none */
+} HideWorld;
+
+/* The plants of a ground near a place, what is built there, and what else of it a hide asks for. */
 typedef struct HideGround {
     const Landscape *landscape;
+    const Culture   *culture;
+    HideSolids       solids;
     Woods            woods;
     const HideJudge *judge; /* begun with these woods; NULL: there is none */
 } HideGround;
 
 /* About a place of the landscape's ENU; half_m: how far plants are known. */
-Status hide_ground_open(HideGround *out, const Landscape *landscape, uint64_t seed, const double about_m[2],
-                        double half_m, const HideJudge *judge);
+Status hide_ground_open(HideGround *out, const HideWorld *world, const double about_m[2], double half_m);
 void   hide_ground_close(HideGround *ground); /* accepts zeroes */
 
 /* The triangles of a model at rest. */
@@ -61,7 +71,7 @@ typedef struct HidePoints {
 } HidePoints;
 Status hide_points(HidePoints *out, const HideShape *shape, const double d_body[3]);
 
-/* Estimated share of these points that plants, ground and the box (NULL: none) hide, 0 .. 1. */
+/* Estimated share of these points that plants, ground, what is built and the box (NULL: none) hide, 0 .. 1. */
 double hide_occlusion(const HideGround *ground, const HidePose *pose, const HidePoints *points, const HideSight *sight,
                       const HideBox *box);
 /* The same by the judge of the ground. False: it could not. */

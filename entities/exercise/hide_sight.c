@@ -138,14 +138,18 @@ static double depth_of(const Plant *plant, const double foot[3], const double d[
 
 /* ---- ground, plants near a line ------------------------------------------------------------------------ */
 
-Status hide_ground_open(HideGround *out, const Landscape *landscape, uint64_t seed, const double about_m[2],
-                        double half_m, const HideJudge *judge)
+Status hide_ground_open(HideGround *out, const HideWorld *world, const double about_m[2], double half_m)
 {
-    const WoodsConfig config = {
-        .seed = seed, .centre_m = {about_m[0], about_m[1]}, .half_width_m = half_m, .most_trees = woods_most_trees};
-    *out = (HideGround){.landscape = landscape};
-    Status status = woods_create(&out->woods, landscape, &config, NULL);
+    const WoodsConfig config = {.seed = world->seed,
+                                .centre_m = {about_m[0], about_m[1]},
+                                .half_width_m = half_m,
+                                .most_trees = woods_most_trees,
+                                .culture = world->culture};
+    const HideJudge  *judge = world->judge;
+    *out = (HideGround){.landscape = world->landscape, .culture = world->culture};
+    Status status = woods_create(&out->woods, world->landscape, &config, NULL);
     if (status != STATUS_OK) out->landscape = NULL;
+    if (status == STATUS_OK) status = hide_solids_open(&out->solids, world->culture, world->landscape, about_m, half_m);
     if (status == STATUS_OK && judge) status = judge->begin(judge->user, &out->woods);
     if (status == STATUS_OK) out->judge = judge;
     return status;
@@ -155,6 +159,7 @@ void hide_ground_close(HideGround *ground)
 {
     if (ground->judge) ground->judge->end(ground->judge->user);
     if (ground->landscape) woods_destroy(&ground->woods);
+    hide_solids_close(&ground->solids);
     *ground = (HideGround){0};
 }
 
@@ -268,22 +273,6 @@ void hide_shape_close(HideShape *shape)
     *shape = (HideShape){0};
 }
 
-/* Whether a ray from o meets a triangle (Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection",
- * 1997). */
-static bool meets(const double corner[3][3], const double o[3], const double d[3])
-{
-    double u[3], v[3], p[3], q[3], s[3];
-    v3_sub(u, corner[1], corner[0]), v3_sub(v, corner[2], corner[0]);
-    v3_cross(p, d, v);
-    const double det = v3_dot(u, p);
-    if (fabs(det) < 1e-12) return false;
-    v3_sub(s, o, corner[0]);
-    const double a = v3_dot(s, p) / det;
-    v3_cross(q, s, u);
-    const double b = v3_dot(d, q) / det;
-    return a >= 0 && b >= 0 && a + b <= 1 && v3_dot(v, q) / det > 0;
-}
-
 /* Whether something solid stands in a ray's way. */
 static bool box_hides(const HideBox *box, const double p_enu[3], const double d_enu[3])
 {
@@ -304,7 +293,7 @@ static bool box_hides(const HideBox *box, const double p_enu[3], const double d_
         from = fmax(from, fmin(a, b)), to = fmin(to, fmax(a, b));
     }
     for (int t = 0; to > from && t < box->shape.count; t++)
-        if (meets((const double(*)[3])box->shape.corner[t], o, d)) return true;
+        if (hide_triangle_meets((const double(*)[3])box->shape.corner[t], o, d)) return true;
     return false;
 }
 
@@ -360,18 +349,31 @@ static void point_of(double p_enu[3], const HidePose *pose, const double b[3])
     p_enu[2] = pose->p_enu[2] - b[2];
 }
 
+/* What is built between the vehicle and the observer. */
+static int solids_along(int list[hide_solids_most], const HideGround *ground, const HidePose *pose,
+                        const HidePoints *points, const HideSight *sight)
+{
+    double radius_m = 0;
+    for (int n = 0; n < points->count; n++)
+        radius_m = fmax(radius_m, hypot(points->p_body[n][0], points->p_body[n][1]));
+    return hide_solids_along(list, &ground->solids, pose->p_enu, radius_m, sight->d_enu, sight->range_m);
+}
+
 double hide_occlusion(const HideGround *ground, const HidePose *pose, const HidePoints *points, const HideSight *sight,
                       const HideBox *box)
 {
-    static const double deepest = 8; /* e^-8 is nothing */
-    const Plant        *list[plants_most];
-    const int           plants = plants_along(list, ground, pose, sight);
-    const Woods        *w = &ground->woods;
-    double              seen = 0;
+    static const double      deepest = 8; /* e^-8 is nothing */
+    const Plant             *list[plants_most];
+    const int                plants = plants_along(list, ground, pose, sight);
+    static _Thread_local int solid[hide_solids_most];
+    const int                solids = solids_along(solid, ground, pose, points, sight);
+    const Woods             *w = &ground->woods;
+    double                   seen = 0;
     for (int n = 0; n < points->count; n++) {
         double p[3], depth = 0;
         point_of(p, pose, points->p_body[n]);
         if (box && box_hides(box, p, sight->d_enu)) continue;
+        if (hide_solids_meet(&ground->solids, solid, solids, p, sight->d_enu)) continue;
         if (n % 8 == 0 && ground_hides(ground->landscape, p, sight->d_enu, sight->range_m)) depth = deepest;
         for (int k = 0; k < plants && depth < deepest; k++) {
             double foot[3];
@@ -399,9 +401,12 @@ bool hide_judged(double *occlusion, const HideGround *ground, const HidePose *po
         for (int k = 0; k < 3; k++) o[k][n] = p[k], d[k][n] = sight->d_enu[k];
     }
     if (judge->dark(judge->user, dark, eye_enu, points->count, o_enu, d_enu, sight->range_m) != STATUS_OK) return false;
+    static _Thread_local int solid[hide_solids_most];
+    const int                solids = solids_along(solid, ground, pose, points, sight);
     for (int n = 0; n < points->count; n++) {
         const double p[3] = {o[0][n], o[1][n], o[2][n]};
-        hidden += dark[n] || (box && box_hides(box, p, sight->d_enu)) ||
+        hidden += dark[n] || hide_solids_meet(&ground->solids, solid, solids, p, sight->d_enu) ||
+                  (box && box_hides(box, p, sight->d_enu)) ||
                   ground_hides(ground->landscape, p, sight->d_enu, sight->range_m);
     }
     *occlusion = (double)hidden / points->count;

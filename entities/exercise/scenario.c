@@ -93,7 +93,8 @@ void scenario_place_text(char out[scenario_place_size], const Scenario *s)
 
 const char *scenario_hide_name(enum ScenarioHide hide)
 {
-    static const char *const names[] = {"none", "open", "tree-line", "wood", "hedge", "hollow", "beside"};
+    static const char *const names[] = {"none",   "open",   "tree-line", "wood", "hedge",
+                                        "hollow", "beside", "building",  "wall"};
     return names[hide];
 }
 
@@ -192,6 +193,8 @@ static bool hide_fits(const Scenario *s, const ScenarioGroup *group)
     const char *wrong = NULL;
     if (group->hide == SCENARIO_HIDE_NONE) wrong = *group->beside ? "beside: needs hide: beside" : NULL;
     else if (!s->ground.planted) wrong = "hide: needs ground.planted: true, whose plants are known";
+    else if (!s->ground.buildings && (group->hide == SCENARIO_HIDE_BUILDING || group->hide == SCENARIO_HIDE_WALL))
+        wrong = "hide: building and wall need ground.buildings: true";
     else if (group->route_m.count != 2) wrong = "hide: needs one place in route_m, near which it stands";
     else if ((group->hide == SCENARIO_HIDE_BESIDE) != (*group->beside != 0))
         wrong = "hide: beside and beside: NAME ID need each other";

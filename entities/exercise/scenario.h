@@ -41,9 +41,10 @@ enum {
     ROW(CHOICE, , hide, SCENARIO_HIDE_NONE, ScenarioHide, \
         (SCENARIO_HIDE_NONE, "none")(SCENARIO_HIDE_OPEN, "open")(SCENARIO_HIDE_TREE_LINE, "tree-line") \
         (SCENARIO_HIDE_WOOD, "wood")(SCENARIO_HIDE_HEDGE, "hedge")(SCENARIO_HIDE_HOLLOW, "hollow") \
-        (SCENARIO_HIDE_BESIDE, "beside"), \
+        (SCENARIO_HIDE_BESIDE, "beside")(SCENARIO_HIDE_BUILDING, "building")(SCENARIO_HIDE_WALL, "wall"), \
         "where each stands near route_m, on ground.planted: in the open, before or behind the edge of a wood, in it, " \
-        "at a hedge, in a hollow, or beside an entity of this scenario; none: at route_m") \
+        "at a hedge, in a hollow, beside an entity of this scenario, behind a building or a wall of ground.buildings; none: " \
+        "at route_m") \
     ROW(DOUBLE, , hide_m, 150, 5, 1000, "m", "largest distance from route_m of what hides") \
     ROW(DOUBLE, , occlusion, NAN, 0, 0.95, "", \
         "share of each that is to be hidden from the observer of seen; absent: drawn in 0.1 .. 0.9 for each, and in the " \
@@ -121,6 +122,8 @@ enum {
         "height of the swells of synthetic ground, which are 0.4 to 0.6 km long") \
     ROW(BOOL, ground., planted, false, \
         "the synthetic ground and the plants of a node with terrain.place, of the same seed, on which entities can hide") \
+    ROW(BOOL, ground., buildings, false, \
+        "of ground.planted: what is built on it too, as a node with terrain.buildings=invented has it") \
     ROW(LONG, ground., seed, 1, 0, 2147483647, "", "of ground.planted: the node's seed") \
     ROW(DOUBLE, ground., relief_m, 15, 0, 200, "m", "of ground.planted: the node's terrain.relief_m") \
     ROW(DOUBLE, ground., spacing_m, 4, 1, 30, "m", "of ground.planted: the node's terrain.spacing_m") \

@@ -220,8 +220,15 @@ bool clutter_can_stand(const ClutterSpots *s, double x_m, double y_m, double hea
         const double off_m = most ? step_m * k / most : 0, x = x_m + off_m * forward[0], y = y_m + off_m * forward[1];
         WayPlace     way;
         if (landscape_surface(land, x, y) == SURFACE_WATER) return false;
-        if (culture && culture_is_near(culture, x, y, half_m[1] + gap_m)) return false;
+        if (culture && culture_is_in_way(culture, x, y, half_m[1] + gap_m)) return false;
         if (landscape_way(&way, land, x, y) && fabs(way.across_m) < way.half_m + half_m[1] + 0.1) return false;
+    }
+    /* its corners, which those discs leave out */
+    for (int k = 0; k < 4 && culture; k++) {
+        const double a = (k & 1 ? 1 : -1) * half_m[0], b = (k & 2 ? 1 : -1) * half_m[1];
+        if (culture_is_in_way(culture, x_m + a * forward[0] + b * forward[1], y_m + a * forward[1] - b * forward[0],
+                              0.5 * gap_m))
+            return false;
     }
     return true;
 }

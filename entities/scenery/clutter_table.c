@@ -61,7 +61,8 @@ Status clutter_table_read(ClutterTable *out, const char *path)
         {"shape", TABLE_OWN, FIELD(shape), .parse = parse_shape},
         {"paint", TABLE_OWN, FIELD(paint), .absent = TABLE_EMPTY, .parse = parse_paint},
         {"where", TABLE_CHOICE, FIELD(where),
-         .choices = "road, lane, track, house, barn, hall, field, pasture, scrub, forest, edge, rock, sand, built"},
+         .choices =
+             "road, lane, track, house, barn, hall, farmyard, works, field, pasture, scrub, forest, edge, rock, sand, built"},
         {"density", TABLE_DOUBLE, FIELD(density), .low = 0, .high = 10000},
         {"group_low", TABLE_WHOLE, FIELD(group_low), .low = 1, .high = 100},
         {"group_high", TABLE_WHOLE, FIELD(group_high), .low = 1, .high = 100},

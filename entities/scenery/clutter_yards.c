@@ -85,11 +85,69 @@ static Status place_plots(ClutterWork *work)
     return status;
 }
 
-Status clutter_place_yards(ClutterWork *work)
+/* ---- in the open of a yard ---------------------------------------------------------------------- */
+
+/* A straight piece of a yard's strip. */
+typedef struct Strip {
+    double   a_m[2], along[2], long_m, wide_m; /* along: unit vector */
+    uint64_t key;
+} Strip;
+
+/* Things of a row on a strip, along it or across; its round ends stay free. */
+static Status place_open(ClutterWork *work, const Strip *s, int r)
+{
+    static const double turn_rad = 0.25; /* at most, off the strip's direction: nothing is parked quite straight */
+    const uint64_t      of = clutter_hash(work, r, (int64_t)s->key, 4, 0);
+    const double        mean = work->config->density * work->table.row[r].density * 1e-4 * s->long_m * s->wide_m;
+    const int           count = clutter_poisson(mean, clutter_unit(of, 0));
+    Status              status = STATUS_OK;
+    for (int k = 0; k < count && status == STATUS_OK; k++) {
+        const uint64_t h = invented_hash(of, k + 1, 9);
+        ClutterThing   t = {.rank = h, .row = r, .variant = clutter_variant_of(work, r, h)};
+        const double   quarter_rad = 0.5 * pi_rad * floor(4 * clutter_unit(h, 1));
+        bool           stands = false;
+        t.heading_rad = atan2(s->along[0], s->along[1]) + quarter_rad + turn_rad * (2 * clutter_unit(h, 2) - 1);
+        for (uint64_t n = 0; n < tries && !stands; n++) {
+            const double along_m = s->long_m * clutter_unit(h, 10 + 2 * n);
+            const double right_m = s->wide_m * (clutter_unit(h, 11 + 2 * n) - 0.5);
+            t.x_m = s->a_m[0] + along_m * s->along[0] + right_m * s->along[1];
+            t.y_m = s->a_m[1] + along_m * s->along[1] - right_m * s->along[0];
+            stands = clutter_can_stand(work->spots, t.x_m, t.y_m, t.heading_rad, work->variant[t.variant].size_m);
+        }
+        if (stands && clutter_in_square(work->config, t.x_m, t.y_m, clutter_margin_m)) status = clutter_add(work, t);
+    }
+    return status;
+}
+
+static Status place_opens(ClutterWork *work)
 {
     const Culture *culture = work->config->culture;
     Status         status = STATUS_OK;
+    for (int n = 0; n < culture->lines; n++) {
+        const CultureLine *l = &culture->line[n];
+        const bool         paved = l->surface == SURFACE_BUILT || l->surface == SURFACE_ROAD;
+        const ClutterWhere where = paved ? CLUTTER_IN_WORKS : CLUTTER_IN_FARMYARD;
+        for (int k = 0; l->kind == CULTURE_YARD && k + 1 < l->corners; k++) {
+            const double *a = culture->corner_m[l->first_corner + k], *b = culture->corner_m[l->first_corner + k + 1];
+            Strip         s = {.a_m = {a[0], a[1]}, .wide_m = (double)l->width_m, .key = invented_hash(l->id, k, 6)};
+            s.long_m = hypot(b[0] - a[0], b[1] - a[1]);
+            if (!(s.long_m > 1) || !clutter_in_square(work->config, a[0], a[1], s.long_m + s.wide_m + clutter_margin_m))
+                continue;
+            for (int c = 0; c < 2; c++) s.along[c] = (b[c] - a[c]) / s.long_m;
+            for (int r = 0; r < work->table.rows && status == STATUS_OK; r++)
+                if (work->table.row[r].where == where) status = place_open(work, &s, r);
+        }
+    }
+    return status;
+}
+
+/* ---- all of them -------------------------------------------------------------------------------- */
+
+Status clutter_place_yards(ClutterWork *work)
+{
+    const Culture *culture = work->config->culture;
     if (!culture || culture->buildings == 0) return place_plots(work);
+    Status status = place_opens(work);
     for (int n = 0; n < culture->buildings && status == STATUS_OK; n++) {
         const Building    *b = &culture->building[n];
         const ClutterWhere where = b->use == BUILDING_HOUSE || b->use == BUILDING_FLATS ? CLUTTER_AT_HOUSE

@@ -5,9 +5,9 @@
 
 const char *scenery_class_name(SceneryClass of)
 {
-    static const char *const name[CLUTTER_CLASSES] = {"none",    "car",     "van",   "lorry", "tractor", "generator",
-                                                      "machine", "trailer", "wreck", "fire",  "heap",    "animal",
-                                                      "rock",    "crates",  "tent",  "bale"};
+    static const char *const name[CLUTTER_CLASSES] = {"none",    "car",     "van",   "lorry", "tractor",  "generator",
+                                                      "machine", "trailer", "wreck", "fire",  "heap",     "animal",
+                                                      "rock",    "crates",  "tent",  "bale",  "container"};
     return of < CLUTTER_CLASSES ? name[of] : "none";
 }
 

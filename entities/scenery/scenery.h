@@ -29,6 +29,7 @@ typedef enum SceneryClass {
     CLUTTER_CRATES,
     CLUTTER_TENT,
     CLUTTER_BALE,
+    CLUTTER_CONTAINER, /* freight container that stands in a yard */
     CLUTTER_CLASSES
 } SceneryClass;
 const char *scenery_class_name(SceneryClass of); /* "car" ... */

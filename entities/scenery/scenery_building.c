@@ -1,6 +1,7 @@
 /* entities/scenery/scenery_building.c: one building of a culture: its place in the cell, roof, walls, chimneys, vents.
  */
 #include "entities/scenery/scenery_buildings_private.h"
+#include "terrain/culture/courtyards.h"
 
 #include <stdlib.h>
 
@@ -68,6 +69,22 @@ static void vents(BuildingWork *w)
     }
 }
 
+void building_gutters(BuildingWork *w, const RoofPlan *plan, const bool *gable, double z)
+{
+    static const double half_m = 0.045, least_m = 0.5;
+    const bool          lived_in = w->b->use == BUILDING_HOUSE || w->b->use == BUILDING_FLATS;
+    if (!lived_in || w->b->damage > 1 || w->b->roof_fabric == FABRIC_THATCH) return;
+    const int slot = cell_part(w->cell, "gutter", "sheet_grey", HEAT_PASSIVE);
+    for (int k = 0; k < plan->corners; k++) {
+        const double *a = plan->node[k], *b = plan->node[(k + 1) % plan->corners];
+        const double  d[2] = {b[0] - a[0], b[1] - a[1]}, length_m = hypot(d[0], d[1]);
+        if ((gable && gable[k]) || length_m < least_m) continue;
+        const double out[2] = {half_m * d[1] / length_m, -half_m * d[0] / length_m};
+        cell_bar(w->cell, slot, (const double[3]){a[0] + out[0], a[1] + out[1], z},
+                 (const double[3]){b[0] + out[0], b[1] + out[1], z}, half_m);
+    }
+}
+
 void building_make(CellMesh *cell, const Culture *culture, const Building *b, const double origin[3],
                    SceneryGround *ground_m, void *user)
 {
@@ -81,6 +98,9 @@ void building_make(CellMesh *cell, const Culture *culture, const Building *b, co
     for (int k = 0; k < w.n; k++)
         for (int c = 0; c < 2; c++) w.p[k][c] = culture->corner_m[b->first_corner + k][c] - origin[c];
     w.base_m = (double)b->base_m - origin[2];
+    bool *slit = malloc((size_t)w.n * sizeof *slit);
+    if (!slit) cell->status = STATUS_NO_MEMORY;
+    else if (courtyards_slits(slit, (const double(*)[2])w.p, w.n) > 0) w.slit = slit;
     w.skirt_m = skirt(&w);
     cell_begin(cell, b->id);
     const HeatRole role = b->heated && b->damage < 2 ? HEAT_DWELLING : HEAT_PASSIVE;
@@ -96,5 +116,5 @@ void building_make(CellMesh *cell, const Culture *culture, const Building *b, co
         vents(&w);
     }
     cell_end(cell);
-    free(w.p);
+    free(w.p), free(slit);
 }

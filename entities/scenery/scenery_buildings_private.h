@@ -15,8 +15,8 @@ double outline_area_m2(const double (*p)[2], int n);
  * then. Without memory: false, status STATUS_NO_MEMORY, which is else left alone. O(n^2) for usual outlines. */
 bool outline_triangulate(int (*triangle)[3], Status *status, const double (*p)[2], int n);
 /* Moves every edge outwards by out_m (negative: inwards), corners mitred. false: the result would cross itself or lose
- * an edge. */
-bool outline_offset(double (*to)[2], const double (*p)[2], int n, double out_m);
+ * an edge. still [n]: edges that stay where they are; NULL: none. */
+bool outline_offset(double (*to)[2], const double (*p)[2], int n, double out_m, const bool *still);
 /* The longest mitre of a corner, in units of the distance that edges move. */
 double outline_longest_mitre(const double (*p)[2], int n);
 
@@ -111,6 +111,7 @@ typedef struct BuildingWork {
     CellMesh       *cell;
     int             n;
     double (*p)[2];                 /* outline in the cell's plane */
+    bool          *slit;            /* [n]: sides of slits to courtyards; NULL: there are none */
     double         base_m;          /* in the cell's height */
     double         top_m;           /* of the walls' upright part over the base: what roofs leave */
     double         skirt_m;         /* how far walls go into the ground */
@@ -124,6 +125,8 @@ typedef struct BuildingWork {
 
 /* Adds the roof and what of the walls is over top_m, with its lid, and the floor; sets top_m. */
 void building_roof(BuildingWork *w);
+/* A gutter of zinc sheet along the eaves of what people live in, just outside of the slab's edge at height z. */
+void building_gutters(BuildingWork *w, const RoofPlan *plan, const bool *gable, double z);
 /* Adds the walls to top_m, with windows and doors. */
 void building_walls(BuildingWork *w);
 /* All that is left of a destroyed building. */

@@ -4,7 +4,7 @@
  * clutter_ground.c  what is free: evidence, ways, culture, surface, slope
  * clutter_areas.c   things by area: animals, rocks, machines in the fields
  * clutter_lines.c   things beside roads, and what drives on them
- * clutter_yards.c   things about houses, barns and halls
+ * clutter_yards.c   things about houses, barns and halls, and in the open of yards
  * clutter_variants.c  shapes in their paints and sizes
  * clutter_settle.c  conflicts between things, and limits
  * clutter_objects.c models, states and objects of the scenery */
@@ -27,6 +27,9 @@ typedef enum ClutterWhere {
     CLUTTER_AT_HOUSE,
     CLUTTER_AT_BARN,
     CLUTTER_AT_HALL,
+    /* open yards: a hectare of them */
+    CLUTTER_IN_FARMYARD, /* unpaved */
+    CLUTTER_IN_WORKS,    /* paved */
     /* areas: km2 of them */
     CLUTTER_IN_FIELD,   /* crop, ploughed and bare soil */
     CLUTTER_IN_PASTURE, /* grass, green or dry */
@@ -139,7 +142,8 @@ void   clutter_spots_destroy(ClutterSpots *spots); /* accepts NULL */
 bool clutter_is_area(const Landscape *landscape, ClutterWhere where, double x_m, double y_m);
 /* Whether a disc about a place keeps clear of reported vehicles and, up to height_m, of clear lines. */
 bool clutter_keeps_clear(const ClutterSpots *spots, double x_m, double y_m, double radius_m, double height_m);
-/* Whether a thing of these sizes can stand: dry ground below, slope, clear, nothing built, off the lanes of ways. */
+/* Whether a thing of these sizes can stand: dry ground below, slope, clear, nothing built but yards, off the lanes of
+ * ways. */
 bool clutter_can_stand(const ClutterSpots *spots, double x_m, double y_m, double heading_rad, const float size_m[3]);
 /* Pose on the ground: the plane through the ground below its ends and sides; upright: only its heading turns it. */
 bool clutter_pose(double p_enu[3], double r_enu_from_body[9], const Landscape *landscape, double x_m, double y_m,

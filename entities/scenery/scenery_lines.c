@@ -15,7 +15,7 @@ static double spacing_m(int kind)
 {
     static const double of[CULTURE_LINE_KINDS] = {
         [CULTURE_WALL] = 8,  [CULTURE_FENCE] = 2.7, [CULTURE_WIRE_FENCE] = 4, [CULTURE_BRIDGE] = 8,
-        [CULTURE_ROAD] = -1, [CULTURE_TRACK] = -1,  [CULTURE_WATER] = -1};
+        [CULTURE_ROAD] = -1, [CULTURE_TRACK] = -1,  [CULTURE_WATER] = -1,     [CULTURE_YARD] = -1};
     return of[kind];
 }
 

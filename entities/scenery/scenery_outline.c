@@ -134,11 +134,27 @@ static bool they_meet(const double a[2], const double b[2], const double c[2], c
     return !((abc > 0 && abd > 0) || (abc < 0 && abd < 0) || (cda > 0 && cdb > 0) || (cda < 0 && cdb < 0));
 }
 
-bool outline_offset(double (*to)[2], const double (*p)[2], int n, double out_m)
+/* Where a corner goes when of its edges only some move outwards by 1; false: the edges are in one line. */
+static bool half_mitre(double out[2], const double before[2], const double at[2], const double after[2], bool first,
+                       bool second)
+{
+    double u[2], v[2];
+    if (!direction(u, before, at) || !direction(v, at, after)) return false;
+    const double turn = u[0] * v[1] - u[1] * v[0];
+    if (!(fabs(turn) > 0.1)) return false;
+    /* along the edge that stays, so far that the other is 1 farther out */
+    for (int c = 0; c < 2; c++) out[c] = first ? -v[c] / turn : second ? u[c] / turn : 0;
+    return true;
+}
+
+bool outline_offset(double (*to)[2], const double (*p)[2], int n, double out_m, const bool *still)
 {
     for (int k = 0; k < n; k++) {
-        double m[2];
-        if (!mitre(m, p[(k + n - 1) % n], p[k], p[(k + 1) % n])) return false;
+        double     m[2];
+        const bool first = !still || !still[(k + n - 1) % n], second = !still || !still[k];
+        const bool is_mitre = first && second ? mitre(m, p[(k + n - 1) % n], p[k], p[(k + 1) % n])
+                                              : half_mitre(m, p[(k + n - 1) % n], p[k], p[(k + 1) % n], first, second);
+        if (!is_mitre) return false;
         for (int c = 0; c < 2; c++) to[k][c] = p[k][c] + out_m * m[c];
     }
     for (int k = 0; k < n; k++) {

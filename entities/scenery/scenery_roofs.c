@@ -174,7 +174,7 @@ static double overhang(Outline out, const BuildingWork *w)
     const double        sharp = outline_longest_mitre((const double(*)[2])w->p, w->n);
     const double        wanted_m = scenery_overhang_m * fmin(1, widest_mitre / sharp);
     for (double by_m = wanted_m; w->n <= 1024 && by_m > 0.05; by_m *= 0.5)
-        if (outline_offset(out, (const double(*)[2])w->p, w->n, by_m)) return by_m;
+        if (outline_offset(out, (const double(*)[2])w->p, w->n, by_m, w->slit)) return by_m;
     memcpy(out, w->p, (size_t)w->n * sizeof *out);
     return 0;
 }
@@ -244,7 +244,7 @@ static void flat_roof(BuildingWork *w, Outline spare)
     const double z = w->base_m, eaves_m = w->b->eaves_m, ridge_m = w->b->ridge_m;
     const bool   is_flat = w->b->roof == ROOF_FLAT; /* else: a slope was not possible */
     const bool   parapet = is_flat && w->b->use != BUILDING_SHED && w->n <= 1024 &&
-                         outline_offset(spare, (const double(*)[2])w->p, w->n, -parapet_m);
+                         outline_offset(spare, (const double(*)[2])w->p, w->n, -parapet_m, NULL);
     double inside[2];
     inner_place(inside, w);
     const double top_m = parapet ? ridge_m : eaves_m;
@@ -368,7 +368,7 @@ static void slab_of_plan(BuildingWork *w, const RoofPlan *plan, const bool *gabl
 }
 
 /* Which edges end a ridge: with two right corners, no longer than their neighbours, or those of a short wing, shortest
- * first; of four edges the two across the ridge. Returns how many. */
+ * first; of four edges the two across the ridge; and sides of slits. Returns how many. */
 static int choose_gables(bool *gable, const BuildingWork *w)
 {
     const int n = w->n;
@@ -376,7 +376,7 @@ static int choose_gables(bool *gable, const BuildingWork *w)
     double    longest_m = 0;
     for (int k = 0; k < n; k++)
         longest_m = fmax(longest_m, hypot(w->p[(k + 1) % n][0] - w->p[k][0], w->p[(k + 1) % n][1] - w->p[k][1]));
-    for (int k = 0; k < n; k++) gable[k] = false;
+    for (int k = 0; k < n; k++) gable[k] = w->slit && w->slit[k], chosen += gable[k];
     for (;;) {
         int    best = -1;
         double best_length = INFINITY;
@@ -418,6 +418,7 @@ static bool plan_roof(BuildingWork *w, Outline spare, const bool *gable)
     if (ok) {
         const double thick_m = roof_thickness_m(w, per_m), z0 = w->base_m + eaves_m - per_m * out_m;
         slab_of_plan(w, &plan, gable, z0, per_m, thick_m);
+        building_gutters(w, &plan, gable, z0 - 0.5 * thick_m);
         find_ridge(w, &plan, w->base_m + ridge_m);
         w->top_m = eaves_m - 0.5 * thick_m;
         if (gable) gables_and_lid(w, &under, gable, per_m);
@@ -474,10 +475,11 @@ void building_roof(BuildingWork *w)
         const bool sloped = w->b->ridge_m - w->b->eaves_m > 0.05F;
         bool       done = false;
         if (sloped && w->b->roof == ROOF_SKILLION) skillion_roof(w, spare), done = true;
-        if (!done && sloped && w->b->roof == ROOF_PYRAMIDAL) done = pyramid_roof(w);
+        if (!done && sloped && w->b->roof == ROOF_PYRAMIDAL && !w->slit) done = pyramid_roof(w);
         if (!done && sloped && w->b->roof == ROOF_GABLED && w->n <= roof_plan_corners && choose_gables(gable, w) > 0)
             done = plan_roof(w, spare, gable);
-        if (!done && sloped && w->b->roof != ROOF_FLAT) done = plan_roof(w, spare, NULL);
+        if (!done && sloped && w->b->roof != ROOF_FLAT && w->n <= roof_plan_corners)
+            done = plan_roof(w, spare, w->slit); /* slopes end upright at slits */
         if (!done) flat_roof(w, spare);
         const Slope floor = {.z0 = w->base_m - w->skirt_m};
         sheet(w, w->wall, (const double(*)[2])w->p, w->n, &floor, 0, true);

@@ -86,7 +86,7 @@ void building_ruin(BuildingWork *w)
         w->cell->status = STATUS_NO_MEMORY;
     } else {
         const int  n = ragged_outline(p, top_m, w, most);
-        const bool hollow = n <= 1024 && outline_offset(in, (const double(*)[2])p, n, -wall_m);
+        const bool hollow = n <= 1024 && outline_offset(in, (const double(*)[2])p, n, -wall_m, NULL);
         floor_at(w, w->wall, (const double(*)[2])p, n, low_m, true);
         for (int k = 0; k < n; k++) {
             const int    l = (k + 1) % n;

@@ -286,7 +286,7 @@ void building_walls(BuildingWork *w)
     int                         front = 0;
     for (int k = 0; k < w->n; k++) {
         set_wall(&f, w, k);
-        const double worth = worth_as_front(w, &f);
+        const double worth = w->slit && w->slit[k] ? -1 : worth_as_front(w, &f);
         around_m += f.length_m;
         if (worth > most) most = worth, front = k;
     }
@@ -296,7 +296,7 @@ void building_walls(BuildingWork *w)
         set_storeys(&f, w);
         set_columns(&f, w, k == front);
         set_lines(&f, w);
-        if (f.columns > 0 && f.rows > 1 && !bare) {
+        if (f.columns > 0 && f.rows > 1 && !bare && !(w->slit && w->slit[k])) {
             make_grid(w, &f);
             continue;
         }

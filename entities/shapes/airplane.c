@@ -217,7 +217,8 @@ static void build_engines(MeshBuilder *b, const Airplane *a)
     if (a->engines == NOSE_PROPELLER || a->engines == TAIL_PROPELLER) {
         const double x = a->engines == NOSE_PROPELLER ? 3.2 : -0.5 * a->length + 0.45;
         mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
-        parts_bar(b, x - 0.35, 0.2, a->engine_h - 0.45, x - 0.15, 0.2, a->engine_h - 0.15, 0.04);
+        const double low = a->engines == NOSE_PROPELLER ? 0.75 : 0.45; /* below the cowling */
+        parts_bar(b, x - 0.35, 0.2, a->engine_h - low, x - 0.15, 0.2, a->engine_h - 0.15, 0.04);
         return;
     }
     mesh_part(b, 0, "nacelles", a->paint, HEAT_AIRFRAME);

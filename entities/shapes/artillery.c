@@ -291,18 +291,13 @@ static void build_mortar(MeshBuilder *b)
 
 Status parametric_artillery(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        void (*build)(MeshBuilder *b);
-    } kinds[] = {
-        {"rocket_launcher", build_rocket_launcher}, {"howitzer", build_howitzer}, {"bulldozer", build_bulldozer},
-        {"carrier_cargo", build_carrier_cargo},     {"gun", build_gun},           {"mortar", build_mortar},
+    static const ShapeKind kinds[] = {
+        {"rocket_launcher", build_rocket_launcher, 0},
+        {"howitzer", build_howitzer, 0},
+        {"bulldozer", build_bulldozer, 0},
+        {"carrier_cargo", build_carrier_cargo, 0},
+        {"gun", build_gun, 0},
+        {"mortar", build_mortar, 0},
     };
-    int k = 0;
-    while (strcmp(kinds[k].name, name) != 0) k++;
-    MeshBuilder *b = mesh_builder_create(name, sag_m);
-    if (!b) return STATUS_NO_MEMORY;
-    mesh_node(b, "hull", -1, 0, 0, 0);
-    kinds[k].build(b);
-    return mesh_builder_finish(out, b);
+    return parts_build(out, kinds, name, "hull", sag_m);
 }

@@ -1,11 +1,12 @@
 /* entities/shapes/civil.c: civil vehicles and machines: van, box lorry, farm tractor, combine harvester, excavator,
- * generator on a trailer, tipping trailer, burnt-out car.
+ * generator on a trailer, tipping trailer, burnt-out car, freight container.
  *
  * Published length, width and height (manufacturers' data sheets): van: Mercedes Sprinter, standard wheelbase, high
  * roof 5.93 x 2.02 x 2.62 m; lorry: Mercedes Atego 1224 with a box of 7.3 m 9.15 x 2.55 x 3.65; tractor: Fendt 300
  * Vario 4.34 x 2.32 x 2.86; combine: Claas Tucano 8.7 x 7.5 (header) x 3.95; excavator: Caterpillar 320, boom
  * lowered 9.53 x 2.98 x 3.16; generator: Atlas Copco QAS 60 on its trailer 3.90 x 1.60 x 1.85; farm_trailer: tandem
- * tipper of 14 t 7.0 x 2.55 x 2.75; wreck: as the car of wheeled.c, on its rims. What those leave open is an estimate.
+ * tipper of 14 t 7.0 x 2.55 x 2.75; wreck: as the car of wheeled.c, on its rims; container: 6.06 x 2.44 x 2.59 (ISO
+ * 668, 1CC). What those leave open is an estimate.
  */
 #include "entities/shapes/parametric.h"
 #include "entities/shapes/parts_private.h"
@@ -273,28 +274,37 @@ static void build_wreck(MeshBuilder *b)
     }
 }
 
+/* Ribbed walls between posts, doors with their bars at the rear; hollow, which no ray sees. */
+static void build_container(MeshBuilder *b)
+{
+    mesh_part(b, 0, "walls", "paint_blue", HEAT_PASSIVE);
+    parts_box(b, -2.99, 3.00, -1.18, 1.18, 0.15, 2.55);
+    for (int i = 0; i < 20; i++) {
+        const double x = -2.80 + 0.285 * i;
+        parts_boxes(b, x, x + 0.14, 1.17, 1.21, 0.20, 2.48);
+    }
+    mesh_part(b, 0, "frame", "paint_blue", HEAT_PASSIVE);
+    for (int end = -1; end <= 1; end += 2)
+        parts_boxes(b, end < 0 ? -3.03 : 2.88, end < 0 ? -2.88 : 3.03, 1.07, 1.22, 0, 2.59);
+    parts_boxes(b, -2.90, 2.90, 1.12, 1.22, 0.03, 0.19);
+    mesh_part(b, 0, "doors", "metal_dark", HEAT_PASSIVE);
+    for (int side = -1; side <= 1; side += 2)
+        for (int i = 0; i < 2; i++)
+            parts_bar(b, -3.01, side * (0.28 + 0.5 * i), 0.20, -3.01, side * (0.28 + 0.5 * i), 2.45, 0.018);
+}
+
 Status parametric_civil(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        void (*build)(MeshBuilder *b);
-    } kinds[] = {
-        {"van", build_van},
-        {"lorry", build_lorry},
-        {"tractor", build_tractor},
-        {"combine", build_combine},
-        {"excavator", build_excavator},
-        {"generator", build_generator},
-        {"farm_trailer", build_farm_trailer},
-        {"wreck", build_wreck},
+    static const ShapeKind kinds[] = {
+        {"van", build_van, 0},
+        {"lorry", build_lorry, 0},
+        {"tractor", build_tractor, 0},
+        {"combine", build_combine, 0},
+        {"excavator", build_excavator, 0},
+        {"generator", build_generator, 0},
+        {"farm_trailer", build_farm_trailer, 0},
+        {"wreck", build_wreck, 0},
+        {"container", build_container, 0},
     };
-    int k = 0;
-    while (strcmp(kinds[k].name, name) != 0) k++;
-    MeshBuilder *b = mesh_builder_create(name, sag_m);
-    if (!b) return STATUS_NO_MEMORY;
-    mesh_node(b, "chassis", -1, 0, 0, 0);
-    kinds[k].build(b);
-    const Status status = mesh_builder_finish(out, b);
-    if (status == STATUS_OK) out->sag_m = sag_m;
-    return status;
+    return parts_build(out, kinds, name, "chassis", sag_m);
 }

@@ -161,22 +161,13 @@ static void build_smoulder(MeshBuilder *b)
 
 Status parametric_countryside(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        void (*build)(MeshBuilder *b);
-    } kinds[] = {
-        {"cow", build_cow},           {"sheep", build_sheep},   {"deer", build_deer},         {"bale", build_bale},
-        {"campfire", build_campfire}, {"barrel", build_barrel}, {"smoulder", build_smoulder},
+    static const ShapeKind kinds[] = {
+        {"cow", build_cow, 0.003},           {"sheep", build_sheep, 0.003},       {"deer", build_deer, 0.003},
+        {"bale", build_bale, 0.003},         {"campfire", build_campfire, 0.003}, {"barrel", build_barrel, 0.003},
+        {"smoulder", build_smoulder, 0.003},
     };
-    int k = 0;
-    while (strcmp(kinds[k].name, name) != 0) k++;
-    MeshBuilder *b = mesh_builder_create(name, fmin(sag_m, 0.003));
-    if (!b) return STATUS_NO_MEMORY;
-    mesh_node(b, "body", -1, 0, 0, 0);
-    kinds[k].build(b);
-    const Status status = mesh_builder_finish(out, b);
-    if (status == STATUS_OK) out->sag_m = sag_m;
-    for (int p = 0; status == STATUS_OK && kinds[k].build == build_bale && p < out->part_count; p++)
+    const Status status = parts_build(out, kinds, name, "body", sag_m);
+    for (int p = 0; status == STATUS_OK && strcmp(name, "bale") == 0 && p < out->part_count; p++)
         out->part[p].thickness_m = straw_m;
     return status;
 }

@@ -125,6 +125,7 @@ static const struct {
     {"generator", NULL, parametric_civil},
     {"farm_trailer", NULL, parametric_civil},
     {"wreck", NULL, parametric_civil},
+    {"container", NULL, parametric_civil},
     {"cow", NULL, parametric_countryside},
     {"sheep", NULL, parametric_countryside},
     {"deer", NULL, parametric_countryside},

@@ -237,3 +237,15 @@ void parts_rotor(MeshBuilder *b, const char *name, double x, double y, double h,
         parts_wing(b, place_turned(ahead, (double[3]){0, 0, 1}, 2 * pi_rad * i / blades), 0.5 * chord, -0.5 * chord,
                    0.06 * radius, 0, 0.4 * chord, -0.4 * chord, radius, 0, 0.10);
 }
+
+Status parts_build(Model *out, const ShapeKind *kinds, const char *name, const char *root, double sag_m)
+{
+    while (strcmp(kinds->name, name) != 0) kinds++;
+    MeshBuilder *b = mesh_builder_create(name, kinds->most_sag_m > 0 ? fmin(sag_m, kinds->most_sag_m) : sag_m);
+    if (!b) return STATUS_NO_MEMORY;
+    mesh_node(b, root, -1, 0, 0, 0);
+    kinds->build(b);
+    const Status status = mesh_builder_finish(out, b);
+    if (status == STATUS_OK) out->sag_m = sag_m; /* as asked: what is finer is within it */
+    return status;
+}

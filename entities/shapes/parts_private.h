@@ -70,4 +70,13 @@ void parts_propeller(MeshBuilder *b, const char *name, double x, double y, doubl
 void parts_rotor(MeshBuilder *b, const char *name, double x, double y, double h, double radius, double chord,
                  int blades, double rpm);
 
+/* A shape of a file that holds several: what builds it, and the largest chord error that it is made with; 0: any. */
+typedef struct ShapeKind {
+    const char *name;
+    void (*build)(MeshBuilder *b);
+    double most_sag_m;
+} ShapeKind;
+/* Builds the shape of this name, which is one of the kinds, about a node `root`. */
+Status parts_build(Model *out, const ShapeKind *kinds, const char *name, const char *root, double sag_m);
+
 #endif

@@ -238,23 +238,12 @@ static void build_airship(MeshBuilder *b)
 
 Status parametric_rotorcraft(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        void (*build)(MeshBuilder *b);
-    } kinds[] = {
-        {"helicopter_utility", build_utility},
-        {"helicopter_tandem", build_tandem},
-        {"helicopter_light", build_light_helicopter},
-        {"quadcopter", build_quadcopter},
-        {"airship", build_airship},
+    static const ShapeKind kinds[] = {
+        {"helicopter_utility", build_utility, 0},
+        {"helicopter_tandem", build_tandem, 0},
+        {"helicopter_light", build_light_helicopter, 0},
+        {"quadcopter", build_quadcopter, 0.0005},
+        {"airship", build_airship, 0},
     };
-    int k = 0;
-    while (strcmp(kinds[k].name, name) != 0) k++;
-    MeshBuilder *b = mesh_builder_create(name, kinds[k].build == build_quadcopter ? fmin(sag_m, 0.0005) : sag_m);
-    if (!b) return STATUS_NO_MEMORY;
-    mesh_node(b, "fuselage", -1, 0, 0, 0);
-    kinds[k].build(b);
-    const Status status = mesh_builder_finish(out, b);
-    if (status == STATUS_OK) out->sag_m = sag_m;
-    return status;
+    return parts_build(out, kinds, name, "fuselage", sag_m);
 }

@@ -225,31 +225,20 @@ static void build_none(MeshBuilder *b)
 
 Status parametric_structure(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        void (*build)(MeshBuilder *b);
-    } kinds[] = {
-        {"crates", build_crates},
-        {"radar", build_radar},
-        {"tent", build_tent},
-        {"bridge", build_bridge},
-        {"buoy", build_buoy},
-        {"satellite", build_satellite},
-        {"locomotive", build_locomotive},
-        {"railcar", build_railcar},
-        {"animal", build_animal},
-        {"none", build_none},
-        {"chaff", build_none},
+    static const ShapeKind kinds[] = {
+        {"crates", build_crates, 0},
+        {"radar", build_radar, 0},
+        {"tent", build_tent, 0},
+        {"bridge", build_bridge, 0},
+        {"buoy", build_buoy, 0.001},
+        {"satellite", build_satellite, 0},
+        {"locomotive", build_locomotive, 0},
+        {"railcar", build_railcar, 0},
+        {"animal", build_animal, 0},
+        {"none", build_none, 0},
+        {"chaff", build_none, 0},
     };
-    int k = 0;
-    while (strcmp(kinds[k].name, name) != 0) k++;
-    MeshBuilder *b = mesh_builder_create(name, kinds[k].build == build_buoy ? fmin(sag_m, 0.001) : sag_m);
-    if (!b) return STATUS_NO_MEMORY;
-    mesh_node(b, "body", -1, 0, 0, 0);
-    kinds[k].build(b);
-    const Status status = mesh_builder_finish(out, b);
-    if (status == STATUS_OK) out->sag_m = sag_m;
-    return status;
+    return parts_build(out, kinds, name, "body", sag_m);
 }
 
 /* ---- house ---------------------------------------------------------------------------------- */

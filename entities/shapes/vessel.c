@@ -238,22 +238,13 @@ static void build_tanker(MeshBuilder *b)
 
 Status parametric_vessel(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        void (*build)(MeshBuilder *b);
-    } kinds[] = {
-        {"boat", build_boat},
-        {"rhib", build_rhib},
-        {"aircraft_carrier", build_carrier_ship},
-        {"submarine", build_submarine},
-        {"cargo_ship", build_cargo_ship},
-        {"tanker", build_tanker},
+    static const ShapeKind kinds[] = {
+        {"boat", build_boat, 0},
+        {"rhib", build_rhib, 0},
+        {"aircraft_carrier", build_carrier_ship, 0},
+        {"submarine", build_submarine, 0},
+        {"cargo_ship", build_cargo_ship, 0},
+        {"tanker", build_tanker, 0},
     };
-    int k = 0;
-    while (strcmp(kinds[k].name, name) != 0) k++;
-    MeshBuilder *b = mesh_builder_create(name, sag_m);
-    if (!b) return STATUS_NO_MEMORY;
-    mesh_node(b, "hull", -1, 0, 0, 0);
-    kinds[k].build(b);
-    return mesh_builder_finish(out, b);
+    return parts_build(out, kinds, name, "hull", sag_m);
 }

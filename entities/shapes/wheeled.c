@@ -57,7 +57,7 @@ static void build_car(MeshBuilder *b)
     parts_box(b, 2.28, 2.325, -0.55, 0.55, 0.33, 0.52);
     lamps(b, 2.325, 0.58, 0.82, 0.55, 0.66);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
-    parts_bar(b, -2.31, 0.5, 0.28, -1.6, 0.5, 0.28, 0.03);
+    parts_bar(b, -2.31, 0.5, 0.19, -1.6, 0.5, 0.19, 0.03); /* below the floor */
     axles(b, 2, (const double[]){1.35, -1.35}, 0.785, 0.315, 0.10);
 }
 
@@ -173,7 +173,7 @@ static void build_bus(MeshBuilder *b)
     mesh_part(b, 0, "engine_cover", "metal_dark", HEAT_ENGINE_DECK);
     parts_box(b, -5.975, -5.94, -1.0, 1.0, 0.5, 1.3);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
-    parts_bar(b, -5.95, -0.9, 0.38, -5.4, -0.9, 0.38, 0.06);
+    parts_bar(b, -5.95, -0.9, 0.24, -5.4, -0.9, 0.24, 0.06); /* below the floor */
     lamps(b, 5.975, 0.80, 1.15, 0.60, 0.80);
     axles(b, 2, (const double[]){3.25, -2.65}, 1.14, 0.48, 0.135);
 }
@@ -349,30 +349,18 @@ static void build_rocket_truck(MeshBuilder *b)
 
 Status parametric_wheeled(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        void (*build)(MeshBuilder *b);
-    } kinds[] = {
-        {"car", build_car},
-        {"jeep", build_jeep},
-        {"motorcycle", build_motorcycle},
-        {"robot", build_robot},
-        {"bus", build_bus},
-        {"carrier_wheeled", build_carrier_wheeled},
-        {"truck_heavy", build_truck_heavy},
-        {"semi_trailer", build_semi_trailer},
-        {"trailer", build_trailer},
-        {"shelter", build_shelter},
-        {"rocket_truck", build_rocket_truck},
+    static const ShapeKind kinds[] = {
+        {"car", build_car, 0},
+        {"jeep", build_jeep, 0},
+        {"motorcycle", build_motorcycle, 0.002},
+        {"robot", build_robot, 0.002},
+        {"bus", build_bus, 0},
+        {"carrier_wheeled", build_carrier_wheeled, 0},
+        {"truck_heavy", build_truck_heavy, 0},
+        {"semi_trailer", build_semi_trailer, 0},
+        {"trailer", build_trailer, 0},
+        {"shelter", build_shelter, 0},
+        {"rocket_truck", build_rocket_truck, 0},
     };
-    int k = 0;
-    while (strcmp(kinds[k].name, name) != 0) k++;
-    const bool   small = kinds[k].build == build_robot || kinds[k].build == build_motorcycle;
-    MeshBuilder *b = mesh_builder_create(name, small ? fmin(sag_m, 0.002) : sag_m);
-    if (!b) return STATUS_NO_MEMORY;
-    mesh_node(b, "chassis", -1, 0, 0, 0);
-    kinds[k].build(b);
-    const Status status = mesh_builder_finish(out, b);
-    if (status == STATUS_OK) out->sag_m = sag_m;
-    return status;
+    return parts_build(out, kinds, name, "chassis", sag_m);
 }

@@ -232,12 +232,12 @@ static Status cast_shadows(World *world, double shadow_m, Pool *pool)
     return heat_shadow_create(&world->shadow, &of, pool);
 }
 
-/* The wood of the plants that stand, each material once. */
-static int branch_kinds(BranchKind out[branch_most_kinds], const Materials *m)
+/* The wood of the plants that stand, and with marks what they are painted with, each material once. */
+static int branch_kinds(BranchKind out[branch_most_kinds], const Materials *m, bool marked)
 {
     int count = 0;
-    for (int k = 0; k < PLANT_KINDS; k++) {
-        const int row = m->plant[k][PLANT_BARK];
+    for (int k = 0; k < PLANT_KINDS + (marked ? PLANT_MARKS : 0); k++) {
+        const int row = k < PLANT_KINDS ? m->plant[k][PLANT_BARK] : m->mark[k - PLANT_KINDS];
         bool      known = row == 0;
         for (int i = 0; i < count; i++) known |= out[i].material == row;
         if (known || count == branch_most_kinds) continue;
@@ -263,7 +263,8 @@ Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config,
     if (!etc_path(path, sizeof path, "ground_heat.csv")) return STATUS_BAD_VALUE;
     Status     status = ground_kinds_open(&kinds, path, &world->materials);
     BranchKind branch[branch_most_kinds];
-    const int  branches = world->forest ? branch_kinds(branch, &world->materials) : 0;
+    const int  branches =
+        world->forest ? branch_kinds(branch, &world->materials, forest_woods(world->forest)->marked > 0) : 0;
     if (status == STATUS_OK) status = heat_create(&world->heat, &kinds, &c, branch, branches);
     if (status == STATUS_OK && world->landscape && shadow_m > 0) status = cast_shadows(world, shadow_m, pool);
     return status;

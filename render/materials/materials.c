@@ -283,6 +283,21 @@ static Status find_plants(Materials *m, const char *path)
     return STATUS_OK;
 }
 
+/* paint_COLOUR_wood of the program's table. */
+static Status find_marks(Materials *m)
+{
+    for (int k = PLANT_UNMARKED + 1; k < PLANT_MARKS; k++) {
+        char name[64];
+        snprintf(name, sizeof name, "paint_%s_wood", plant_mark_name((PlantMark)k));
+        m->mark[k] = materials_find(m, name);
+        if (m->mark[k] > 0) continue;
+        log_error("materials: row missing, of marks on trunks: name=%s; next: a complete copy of etc/materials.csv",
+                  name);
+        return STATUS_BAD_VALUE;
+    }
+    return STATUS_OK;
+}
+
 static Status take_beneath(void *user, const void *read, const TableRows *rows, int number)
 {
     Materials        *m = user;
@@ -357,6 +372,7 @@ Status materials_add_plants(Materials *m, const char *path, const char *ground_p
 {
     Status status = read_plants(m, path);
     if (status == STATUS_OK) status = find_plants(m, path);
+    if (status == STATUS_OK) status = find_marks(m);
     return status == STATUS_OK ? read_ground_beneath(m, ground_path) : status;
 }
 

@@ -42,6 +42,7 @@ typedef struct Materials {
     int       own_first; /* the first with a new name of the user's; count: there is none */
     int       surface[SURFACE_COUNT];           /* material of each surface class */
     int       plant[PLANT_KINDS][PLANT_ORGANS]; /* rows of etc/plant_optics.csv; 0: the kind has no such organ */
+    int       mark[PLANT_MARKS];                /* rows of what trunks are painted with; 0: unmarked */
     int     **part;                             /* [model][part] */
     int     **damaged;                          /* [model][part * model_damage_states + damage]; NULL: as undamaged. The
                                                  * model's own entry, else `burnt` for destroyed, where there is such a row */
@@ -53,8 +54,9 @@ typedef struct Materials {
 /* surfaces_path: CSV surface, material. Every material a model or surface names must exist: otherwise a
  * logged error and STATUS_BAD_VALUE. catalog may be NULL (no models). */
 Status materials_open(Materials *out, const char *path, const char *surfaces_path, const Catalog *catalog);
-/* Adds the rows of plants (etc/plant_optics.csv) before the user's new ones, and fills in plant[][]; ground_path
- * (etc/woods.csv): the material of the ground beneath them replaces that of its class. Once; failures are logged. */
+/* Adds the rows of plants (etc/plant_optics.csv) before the user's new ones, and fills in plant[][] and mark[];
+ * ground_path (etc/woods.csv): the material of the ground beneath them replaces that of its class. Once; failures are
+ * logged. */
 Status materials_add_plants(Materials *m, const char *path, const char *ground_path);
 void   materials_close(Materials *materials);
 int    materials_find(const Materials *materials, const char *name); /* -1: none */

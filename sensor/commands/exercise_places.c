@@ -47,6 +47,7 @@ Status exercise_places(const Cast *cast, const char *path, bool overwrite)
     log_print("ground: replay it with --set terrain.place=%s --set seed=%lld", place, s->ground.seed);
     if (s->ground.relief_m != 15) log_print(" --set terrain.relief_m=%g", s->ground.relief_m);
     if (s->ground.spacing_m != 4) log_print(" --set terrain.spacing_m=%g", s->ground.spacing_m);
+    log_print(" --set terrain.buildings=%s", s->ground.buildings ? "invented" : "off");
     log_print("\nhidden: %d entit%s, %d of them hidden by more than 0.1 more or less than planned\n",
               cast->hidden_count, cast->hidden_count == 1 ? "y" : "ies", far);
     if (!path) return STATUS_OK;

@@ -35,7 +35,7 @@ Status clutter_records(const ClutterRecord **out, int *count, const Picture *pic
 static const Field clutter_rows[] = {
     {"class", "", "", "",
      "car, van, lorry, tractor, generator, machine, trailer, wreck, fire, heap, animal, rock, "
-     "crates, tent or bale",
+     "crates, tent, bale or container",
      OF_CLUTTER(class_name), FIELD_EXACT, .newer = true},
     {"id", "", "16 hexadecimal digits", "", "the same in every frame, and in every run of the same seed and table",
      OF_CLUTTER(id), FIELD_EXACT, .newer = true},

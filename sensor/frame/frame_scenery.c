@@ -3,10 +3,38 @@
 
 #include "entities/scenery/scenery_buildings.h"
 
+#include <stdlib.h>
+
 double frame_scenery_ground(void *user, double x_m, double y_m)
 {
     const Landscape *landscape = user;
     return elevation_height(&landscape->elevation, x_m, y_m, NULL);
+}
+
+/* Places along what is driven, as reports: clutter keeps clear of them. */
+static Status places_of(LandscapeEvidence *out, const FrameScenery *s)
+{
+    static const double step_m = 6;
+    int                 room = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        GroundFix *fix = pass ? malloc(((size_t)room + 1) * sizeof *fix) : NULL;
+        int        count = 0;
+        if (pass && !fix) return STATUS_NO_MEMORY;
+        for (int n = 0; n < s->drivens; n++) {
+            const DrivenPath *p = &s->driven[n];
+            const double      length_m = hypot(p->b_m[0] - p->a_m[0], p->b_m[1] - p->a_m[1]);
+            const int         steps = (int)fmin(ceil(length_m / step_m), 1 << 16);
+            for (int k = 0; k <= steps; k++, count++) {
+                const double t = steps ? (double)k / steps : 0;
+                if (fix)
+                    fix[count] = (GroundFix){
+                        {p->a_m[0] + t * (p->b_m[0] - p->a_m[0]), p->a_m[1] + t * (p->b_m[1] - p->a_m[1]), 0}, n + 1};
+            }
+        }
+        room = count;
+        if (fix) *out = (LandscapeEvidence){.fix_count = count, .fix = fix};
+    }
+    return STATUS_OK;
 }
 
 static Status add_clutter(FrameScenery *s, const Landscape *landscape)
@@ -21,7 +49,12 @@ static Status add_clutter(FrameScenery *s, const Landscape *landscape)
     memcpy(clutter.north_east_m, plan->north_east_m, sizeof clutter.north_east_m);
     clutter.landscape = landscape;
     clutter.culture = s->culture.index ? &s->culture : NULL;
-    return scenery_add_clutter(&s->scenery, &clutter);
+    LandscapeEvidence driven = {0};
+    Status            status = s->drivens > 0 ? places_of(&driven, s) : STATUS_OK;
+    if (s->drivens > 0) clutter.evidence = &driven;
+    if (status == STATUS_OK) status = scenery_add_clutter(&s->scenery, &clutter);
+    free((void *)driven.fix);
+    return status;
 }
 
 Status frame_scenery_make(FrameScenery *s, const SceneryPlan *plan, const Landscape *landscape)
@@ -29,6 +62,8 @@ Status frame_scenery_make(FrameScenery *s, const SceneryPlan *plan, const Landsc
     Status status = STATUS_OK;
     s->plan = *plan;
     if (plan->from == CULTURE_FROM_SEED) status = culture_invent(&s->culture, landscape, &plan->invented);
+    if (status == STATUS_OK && plan->from == CULTURE_FROM_SEED)
+        status = culture_give_way(&s->culture, &s->gave_way, s->driven, s->drivens);
     if (status == STATUS_OK && s->culture.index)
         status = scenery_add_buildings(&s->scenery, &s->culture, frame_scenery_ground, (void *)landscape);
     return status == STATUS_OK ? add_clutter(s, landscape) : status;
@@ -38,6 +73,7 @@ void frame_scenery_free(FrameScenery *s)
 {
     scenery_free(&s->scenery);
     culture_free(&s->culture);
+    free(s->driven);
     *s = (FrameScenery){0};
 }
 

@@ -6,6 +6,7 @@
 #include "entities/scenery/scenery.h"
 #include "entities/scenery/scenery_clutter.h"
 #include "terrain/culture/culture.h"
+#include "terrain/culture/culture_give_way.h"
 #include "terrain/culture/culture_invented.h"
 
 typedef enum CultureFrom {
@@ -27,12 +28,16 @@ typedef struct SceneryPlan {
 
 typedef struct FrameScenery {
     SceneryPlan plan;
-    Culture     culture; /* indexed; empty: nothing is built */
+    Culture     culture;  /* indexed; empty: nothing is built */
+    int         gave_way; /* records of invented culture that are not there for what is driven */
+    int         drivens;  /* given: where vehicles are, on ground that has not been told of them */
+    DrivenPath *driven;   /* [drivens]; owned */
     Scenery     scenery;
 } FrameScenery;
 
-/* Makes the scenery of a plan, and its culture unless that is given, over a landscape on which no culture is laid yet.
- * The same plan, records and landscape give the same bits. frame_scenery_free after success and failure. */
+/* Makes the scenery of a plan, clear of what is driven, and its culture unless that is given, over a landscape on which
+ * no culture is laid yet. The same plan, records and landscape give the same bits. frame_scenery_free after success and
+ * failure. */
 Status frame_scenery_make(FrameScenery *out, const SceneryPlan *plan, const Landscape *landscape);
 void   frame_scenery_free(FrameScenery *scenery); /* accepts zeroes */
 /* ENU z of a landscape, for what asks for the ground; user: the landscape. */

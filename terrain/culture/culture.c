@@ -291,7 +291,7 @@ void culture_key_add(CacheKey *key, const Culture *c)
     for (int n = 0; n < c->trees; n++) {
         const CultureTree *t = &c->tree[n];
         const double       number[] = {t->x_m, t->y_m, (double)t->height_m};
-        const int32_t      whole[] = {t->kind, t->marked};
+        const int32_t      whole[] = {t->kind, t->mark};
         cache_key_add(key, &t->id, sizeof t->id);
         cache_key_add(key, number, sizeof number);
         cache_key_add(key, whole, sizeof whole);

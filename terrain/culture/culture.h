@@ -63,6 +63,7 @@ typedef enum CultureLineKind {
     CULTURE_ROAD,       /* ground of a surface, width_m wide; height_m 0, as of all that follow */
     CULTURE_TRACK,
     CULTURE_WATER, /* rivers, canals */
+    CULTURE_YARD,  /* ground of a farm or works, on which vehicles stand */
     CULTURE_LINE_KINDS
 } CultureLineKind;
 
@@ -103,7 +104,7 @@ typedef struct CultureTree {
     double   x_m, y_m;
     float    height_m; /* 0: its kind's mean */
     uint8_t  kind;     /* PlantKind of terrain/woods/plant.h */
-    bool     marked;   /* its trunk is painted white at 1.0 .. 1.6 m */
+    uint8_t  mark;     /* PlantMark: what its trunk is painted with */
 } CultureTree;
 
 /* All of it, in a landscape's ENU, m. Arrays grow by culture_add_*; order is that of adding, and no result depends on
@@ -149,8 +150,10 @@ Status culture_index(Culture *culture);
 /* The building whose outline, grown by more_m, holds a place; -1: none. Of several the first. Thread-safe. */
 int culture_building_at(const Culture *culture, double x_m, double y_m, double more_m);
 /* Whether anything built (buildings, lines, points; lines by half their width) is within more_m of a place: nothing
- * grows or parks there. */
+ * grows there. */
 bool culture_is_near(const Culture *culture, double x_m, double y_m, double more_m);
+/* The same but for yards: nothing can be parked there. */
+bool culture_is_in_way(const Culture *culture, double x_m, double y_m, double more_m);
 /* The surface that the last line with one over a place has; SURFACE_NONE: none. */
 int culture_surface_at(const Culture *culture, double x_m, double y_m);
 /* Whether a line with a surface reaches within more_m of a place. */

@@ -223,16 +223,18 @@ typedef struct Look {
     double          p_m[2], more_m;
     CultureLineKind kind;
     int             found; /* number; -1: none yet */
+    CultureMarks   *marks;
 } Look;
 
 /* Returns whether the look-up is done. */
 typedef bool Takes(Look *look, const Item *item);
 
 /* Offers every item of the cells within more_m, until the look-up is done; returns what it found. */
-static int look_about(const Culture *c, double x_m, double y_m, double more_m, CultureLineKind kind, Takes *takes)
+static int look_marking(CultureMarks *marks, const Culture *c, double x_m, double y_m, double more_m,
+                        CultureLineKind kind, Takes *takes)
 {
     const struct CultureIndex *x = c->index;
-    Look                       look = {c, {x_m, y_m}, more_m, kind, -1};
+    Look                       look = {c, {x_m, y_m}, more_m, kind, -1, marks};
     if (!x || !(more_m >= 0) || !(x_m + more_m >= x->x0_m) || !(y_m + more_m >= x->y0_m) ||
         !(x_m - more_m <= x->x0_m + x->cell_m * x->nx) || !(y_m - more_m <= x->y0_m + x->cell_m * x->ny))
         return -1;
@@ -246,6 +248,11 @@ static int look_about(const Culture *c, double x_m, double y_m, double more_m, C
                 if (takes(&look, &x->item[n])) return look.found;
         }
     return look.found;
+}
+
+static int look_about(const Culture *c, double x_m, double y_m, double more_m, CultureLineKind kind, Takes *takes)
+{
+    return look_marking(NULL, c, x_m, y_m, more_m, kind, takes);
 }
 
 static bool is_near(const Look *look, const Item *item)
@@ -274,6 +281,31 @@ static bool take_any(Look *look, const Item *item)
 bool culture_is_near(const Culture *c, double x_m, double y_m, double more_m)
 {
     return look_about(c, x_m, y_m, more_m, CULTURE_LINE_KINDS, take_any) >= 0;
+}
+
+static bool take_what_is_in_way(Look *look, const Item *item)
+{
+    const bool yard = item->kind == ITEM_PIECE && look->culture->line[item->number].kind == CULTURE_YARD;
+    if (!yard && is_near(look, item)) look->found = item->number;
+    return look->found >= 0;
+}
+
+bool culture_is_in_way(const Culture *c, double x_m, double y_m, double more_m)
+{
+    return look_about(c, x_m, y_m, more_m, CULTURE_LINE_KINDS, take_what_is_in_way) >= 0;
+}
+
+static bool mark_one(Look *look, const Item *item)
+{
+    bool *const list[] = {look->marks->building, look->marks->line, look->marks->point};
+    bool       *mark = &list[item->kind][item->number];
+    if (!*mark) *mark = is_near(look, item);
+    return false;
+}
+
+void culture_mark_near(CultureMarks *marks, const Culture *c, double x_m, double y_m, double more_m)
+{
+    look_marking(marks, c, x_m, y_m, more_m, CULTURE_LINE_KINDS, mark_one);
 }
 
 static bool has_surface(const Look *look, const Item *item)

@@ -45,7 +45,7 @@ static void lay_yard(Inventor *v, const Layout *l)
 {
     const double door_m = -site_half_m[1] - front_m;
     for (int k = -1; k <= 1; k += 2) /* two strips side by side, 36 m square with round corners */
-        invent_ground_strip(v, &l->site, CULTURE_TRACK, SURFACE_BARE_SOIL, (double[2]){9 * k, -20},
+        invent_ground_strip(v, &l->site, CULTURE_YARD, SURFACE_BARE_SOIL, (double[2]){9 * k, -20},
                             (double[2]){9 * k, 2}, 18.5);
     invent_ground_strip(v, &l->site, CULTURE_TRACK, SURFACE_TRACK, (double[2]){0, door_m}, (double[2]){0, -24}, 4);
 }

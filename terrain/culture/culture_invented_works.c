@@ -76,7 +76,7 @@ static void build_works(Inventor *v, const Rectangle *site, uint64_t hash, int o
         invent_site_point(v, site, CULTURE_LAMP, (double[2]){18.0 * k, -20}, (double[3]){0.2, 0.2, 9}, owner);
     invent_site_point(v, site, CULTURE_SIGN, (double[2]){8, -works_half_m[1] + 2}, (double[3]){1.6, 0.1, 2.4}, owner);
     for (int k = 0; k < 2; k++)
-        invent_ground_strip(v, site, CULTURE_ROAD, SURFACE_BUILT, (double[2]){-48, -26.0 + 22 * k},
+        invent_ground_strip(v, site, CULTURE_YARD, SURFACE_BUILT, (double[2]){-48, -26.0 + 22 * k},
                             (double[2]){44, -26.0 + 22 * k}, 22.5);
     invent_ground_strip(v, site, CULTURE_ROAD, SURFACE_ROAD, (double[2]){0, -works_half_m[1] - works_front_m},
                         (double[2]){0, -works_half_m[1] + 8}, 7);

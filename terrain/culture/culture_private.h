@@ -8,4 +8,11 @@ void culture_index_free(Culture *culture);
 /* Signed, positive when the corners go counter-clockwise. */
 double culture_area_m2(const double (*corner_m)[2], int corners);
 
+/* Which records are near some place: [buildings], [lines], [points]. */
+typedef struct CultureMarks {
+    bool *building, *line, *point;
+} CultureMarks;
+/* Adds those within more_m of a place. */
+void culture_mark_near(CultureMarks *marks, const Culture *culture, double x_m, double y_m, double more_m);
+
 #endif

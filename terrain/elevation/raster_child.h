@@ -89,19 +89,21 @@ typedef struct WireVectors {
 
 typedef enum WireShape { WIRE_POINT, WIRE_LINE, WIRE_POLYGON, WIRE_SHAPES } WireShape;
 
-enum { wire_most_corners = 65536, wire_most_tags = 96, wire_most_texts = 65536 };
+enum { wire_most_rings = 256, wire_most_corners = 65536, wire_most_tags = 96, wire_most_texts = 65536 };
 
 /* A point, a line or a polygon, whole or as a part of a feature of several; behind it corners x { longitude, latitude }
- * (double, rad), then tags x { name, value }, each text with its 0, to a whole number of 8 octets. A longer line is
- * sent as several that share their ends. */
+ * (double, rad), those of its inner rings one after the other, their numbers of corners (int32_t, to a whole number of
+ * 8 octets), then tags x { name, value }, each text with its 0, to a whole number of 8 octets. A longer line is sent as
+ * several that share their ends. */
 typedef struct WireFeature {
-    uint32_t octets;      /* all of it */
-    int32_t  shape;       /* WireShape */
-    int32_t  corners;     /* of a polygon's outer ring, not closed; 0: it has more than wire_most_corners */
-    int32_t  holes;       /* its inner rings */
-    int32_t  tags, texts; /* texts: octets of the names and values */
-    int32_t  file, part;  /* number of the file; of the part in its feature */
-    int64_t  number;      /* number of the feature among all that were looked at, from 0 */
+    uint32_t octets;              /* all of it */
+    int32_t  shape;               /* WireShape */
+    int32_t  corners;             /* of a polygon's outer ring, not closed; 0: it has more than wire_most_corners */
+    int32_t  holes;               /* its inner rings */
+    int32_t  tags, texts;         /* texts: octets of the names and values */
+    int32_t  file, part;          /* number of the file; of the part in its feature */
+    int64_t  number;              /* number of the feature among all that were looked at, from 0 */
+    int32_t  rings, ring_corners; /* inner rings that are sent, and all their corners, not closed */
 } WireFeature;
 
 typedef struct WireEnd {

@@ -7,16 +7,19 @@
 
 typedef enum VectorShape { VECTOR_POINT, VECTOR_LINE, VECTOR_POLYGON } VectorShape;
 
-enum { vector_most_tags = 96, vector_most_corners = 65536 };
+enum { vector_most_tags = 96, vector_most_corners = 65536, vector_most_rings = 256 };
 
 /* A feature, or one part of a feature of several. */
 typedef struct VectorPart {
     VectorShape shape;
-    int         corners;            /* of a polygon's outer ring, not closed; 0: more than vector_most_corners */
-    const double (*lon_lat_rad)[2]; /* [corners]; NaN where there is no such place on the Earth */
-    int         holes;              /* inner rings of a polygon, which are not handed out */
-    int         file, part;         /* number of the file in the list; of the part in its feature */
-    int64_t     number;             /* of the feature among all, from 0 */
+    int         corners;                 /* of a polygon's outer ring, not closed; 0: more than vector_most_corners */
+    const double (*lon_lat_rad)[2];      /* [corners]; NaN where there is no such place on the Earth */
+    int            holes;                /* inner rings of a polygon */
+    int            rings;                /* of them handed out: those that fit, at most vector_most_rings */
+    const int32_t *ring;                 /* [rings]: corners of each, >= 3 */
+    const double (*ring_lon_lat_rad)[2]; /* one after the other; at most vector_most_corners */
+    int         file, part;              /* number of the file in the list; of the part in its feature */
+    int64_t     number;                  /* of the feature among all, from 0 */
     int         tags;
     const char *name[vector_most_tags], *value[vector_most_tags];
 } VectorPart;

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-_Static_assert((int)vector_most_tags == (int)wire_most_tags && (int)vector_most_corners == (int)wire_most_corners,
+_Static_assert((int)vector_most_tags == (int)wire_most_tags && (int)vector_most_corners == (int)wire_most_corners &&
+                   (int)vector_most_rings == (int)wire_most_rings,
                "what a part may hold");
 
 static void begin(WireChannel *channel, WireAsk ask, const char *key)
@@ -75,6 +76,16 @@ static const char *next_text(size_t *at, const char *texts, size_t octets)
     return text;
 }
 
+static bool rings_are_whole(const WireFeature *w, const int32_t *ring)
+{
+    int64_t corners = 0;
+    for (int k = 0; k < w->rings; k++) {
+        if (ring[k] < 3 || ring[k] > wire_most_corners) return false;
+        corners += ring[k];
+    }
+    return corners == w->ring_corners && (w->rings == 0 || w->shape == WIRE_POLYGON);
+}
+
 bool vector_part_read(VectorPart *out, size_t *at, const uint8_t *data, size_t octets)
 {
     WireFeature w;
@@ -83,16 +94,23 @@ bool vector_part_read(VectorPart *out, size_t *at, const uint8_t *data, size_t o
     memcpy(&w, data + *at, sizeof w);
     if (w.octets > octets - *at || w.octets % 8 != 0 || w.shape < WIRE_POINT || w.shape > WIRE_POLYGON ||
         w.corners < 0 || w.corners > wire_most_corners || w.holes < 0 || w.tags < 0 || w.tags > wire_most_tags ||
-        w.texts < 0 || w.texts > wire_most_texts || w.file < 0 || w.part < 0 || w.number < 0)
+        w.texts < 0 || w.texts > wire_most_texts || w.file < 0 || w.part < 0 || w.number < 0 || w.rings < 0 ||
+        w.rings > wire_most_rings || w.ring_corners < 0 || w.ring_corners > wire_most_corners)
         return false;
     if ((w.shape == WIRE_POINT && w.corners != 1) || (w.shape == WIRE_LINE && w.corners < 2)) return false;
-    const size_t places = 2 * sizeof(double) * (size_t)w.corners;
+    const size_t own = 2 * sizeof(double) * (size_t)w.corners, inner = 2 * sizeof(double) * (size_t)w.ring_corners;
+    const size_t sizes = ((size_t)w.rings * sizeof(int32_t) + 7) / 8 * 8, places = own + inner + sizes;
     if (w.octets != sizeof w + places + ((size_t)w.texts + 7) / 8 * 8) return false;
+    const uint8_t *rings = data + *at + sizeof w + own;
+    if (!rings_are_whole(&w, (const int32_t *)(const void *)(rings + inner))) return false;
     const char *texts = (const char *)data + *at + sizeof w + places;
     *out = (VectorPart){.shape = (VectorShape)w.shape,
                         .corners = w.corners,
                         .lon_lat_rad = (const double(*)[2])(const void *)(data + *at + sizeof w),
                         .holes = w.holes,
+                        .rings = w.rings,
+                        .ring = (const int32_t *)(const void *)(rings + inner),
+                        .ring_lon_lat_rad = (const double(*)[2])(const void *)rings,
                         .file = w.file,
                         .part = w.part,
                         .number = w.number,

@@ -164,14 +164,24 @@ static double ridge_of(const CultureFacts *f, RoofShape roof, double along_rad)
     return f->roof_way == 1 ? across_rad : along_rad;
 }
 
+/* Mean width of the wings about courtyards: of a strip of this area with both its sides in the outline. */
+static double wing_m(const double (*p)[2], int corners, double area_m2)
+{
+    double around_m = 0;
+    for (int k = 0; k < corners; k++)
+        around_m += hypot(p[(k + 1) % corners][0] - p[k][0], p[(k + 1) % corners][1] - p[k][1]);
+    return 2 * area_m2 / around_m;
+}
+
 void culture_building_make(Building *out, HeightFrom *from, int *mended, const CultureFacts *f,
-                           const double (*corner_m)[2], int corners, double area_m2)
+                           const double (*corner_m)[2], int corners, double area_m2, bool hollow)
 {
     const CultureRule *rule = f->what[VECTOR_POLYGON];
     double             side_m[2], along_rad;
     const int          of_rule = rule && rule->makes == MAKES_BUILDING ? rule->kind : -1;
     Building           b = {0};
     culture_rectangle(side_m, &along_rad, corner_m, corners);
+    if (hollow) side_m[1] = wing_m(corner_m, corners, area_m2);
     const BuildingUse use = f->use >= 0    ? (BuildingUse)f->use
                             : of_rule >= 0 ? (BuildingUse)of_rule
                                            : use_by_size(area_m2, f->levels);

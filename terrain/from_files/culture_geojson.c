@@ -87,8 +87,9 @@ static void put_all(FILE *to, const void *user)
         const CultureTree *t = &c->tree[n];
         begin(to, &more, t->id, "Point");
         put_place(to, d->frame, t->x_m, t->y_m, 0);
-        fprintf(to, "}, \"properties\": {\"record\": \"tree\", \"kind\": \"%s\", \"height_m\": %.2f, \"marked\": %s}}",
-                plant_name((PlantKind)t->kind), (double)t->height_m, t->marked ? "true" : "false");
+        fprintf(to,
+                "}, \"properties\": {\"record\": \"tree\", \"kind\": \"%s\", \"height_m\": %.2f, \"marked\": \"%s\"}}",
+                plant_name((PlantKind)t->kind), (double)t->height_m, plant_mark_name((PlantMark)t->mark));
     }
     fputs("\n]}\n", to);
 }

@@ -1,5 +1,6 @@
 /* terrain/from_files/culture_import.c: from features of files to records: places, outlines and lines in ENU, base
  * heights, and what is left out. */
+#include "terrain/culture/courtyards.h"
 #include "terrain/from_files/culture_import_private.h"
 
 #include <stdlib.h>
@@ -10,6 +11,7 @@ typedef struct Import {
     CultureReport      *report;
     CultureRules        rules;
     double (*corner_m)[2]; /* [vector_most_corners + 1] of the part at hand */
+    double (*ring_m)[2];   /* [vector_most_corners] of its inner rings */
     const VectorPart *part;
     CultureFacts      facts;
     int               made; /* records of this part so far */
@@ -105,23 +107,43 @@ static bool all_on_earth(const Import *i)
     return true;
 }
 
+/* Adds the courtyards to the outline of the part: returns the corners that it has then, and how many are in it. */
+static int with_courtyards(int *joined, Import *i)
+{
+    const VectorPart *part = i->part;
+    int               first[vector_most_rings + 1], corners = 0, kept = 0;
+    for (int r = 0, from = 0; r < part->rings; from += part->ring[r++]) {
+        bool whole = true;
+        first[kept] = corners;
+        for (int k = 0; k < part->ring[r]; k++) {
+            const double *lon_lat = part->ring_lon_lat_rad[from + k];
+            culture_place(i->ring_m[corners + k], i->from, lon_lat[0], lon_lat[1]);
+            whole &= isfinite(i->ring_m[corners + k][0]) && isfinite(i->ring_m[corners + k][1]);
+        }
+        if (whole) corners += part->ring[r], kept++;
+    }
+    first[kept] = corners;
+    return courtyards_join(i->corner_m, part->corners, (const double(*)[2])i->ring_m, first, kept, joined);
+}
+
 static Status add_building(Import *i)
 {
     static const double most_m2 = 1e6;
     const double(*p)[2] = (const double(*)[2])i->corner_m;
     CultureReport *r = i->report;
-    const int      n = i->part->corners;
+    int            n = i->part->corners, courtyards = 0;
     HeightFrom     from;
     Building       b;
     int            mended = 0;
     if (n == 0 || n > culture_outline_most) return leave(i, CULTURE_LEFT_LARGE);
     if (!all_on_earth(i)) return leave(i, CULTURE_LEFT_CROSSED);
     if (!outline_is_within(i)) return leave(i, CULTURE_LEFT_OUTSIDE);
+    if (!(fabs(area_of(p, n)) <= most_m2)) return leave(i, CULTURE_LEFT_LARGE);
+    if (i->part->rings > 0) n = with_courtyards(&courtyards, i);
     const double area_m2 = fabs(area_of(p, n));
-    if (!(area_m2 <= most_m2)) return leave(i, CULTURE_LEFT_LARGE);
     const double base_m = culture_floor_m(i->from, p, n);
     if (isnan(base_m)) return leave(i, CULTURE_LEFT_OUTSIDE);
-    culture_building_make(&b, &from, &mended, &i->facts, p, n, area_m2);
+    culture_building_make(&b, &from, &mended, &i->facts, p, n, area_m2, courtyards > 0);
     b.id = id_of(i), b.base_m = (float)base_m;
     const int    before = i->culture->buildings, left = i->culture->left_out;
     const Status status = culture_add_building(i->culture, &b, p, n);
@@ -130,7 +152,8 @@ static Status add_building(Import *i)
         i->culture->left_out = left; /* counted with all others at the end */
         return leave(i, CULTURE_LEFT_CROSSED);
     }
-    r->height_from[from]++, r->mended += mended, r->unread += i->facts.unread, r->courtyards += i->part->holes;
+    r->height_from[from]++, r->mended += mended, r->unread += i->facts.unread, r->courtyards += courtyards;
+    r->built_over += i->part->holes - courtyards;
     i->culture->repaired += mended > 0;
     r->low_m = fmin(r->low_m, (double)b.ridge_m), r->high_m = fmax(r->high_m, (double)b.ridge_m);
     return STATUS_OK;
@@ -203,7 +226,7 @@ static Status add_line(Import *i, const double (*p)[2], int corners)
 static Status add_tree(Import *i, const double p_m[2], const CultureRule *rule)
 {
     const CultureFacts *f = &i->facts;
-    CultureTree         t = {.x_m = p_m[0], .y_m = p_m[1], .height_m = (float)rule->height_m, .marked = f->marked};
+    CultureTree         t = {.x_m = p_m[0], .y_m = p_m[1], .height_m = (float)rule->height_m, .mark = (uint8_t)f->mark};
     if (!is_within(i->from, p_m)) return leave(i, CULTURE_LEFT_OUTSIDE);
     t.kind = (uint8_t)(rule->kind >= 0 ? rule->kind : f->plant >= 0 ? f->plant : PLANT_ENGLISH_OAK);
     if (f->height_m >= 0.3 && f->height_m <= 100) t.height_m = (float)f->height_m;
@@ -324,12 +347,13 @@ static Status read_vectors(Import *i)
     Status    status = culture_rules_open(&i->rules, NULL);
     box_of(box_deg, i->from);
     i->corner_m = malloc((vector_most_corners + 1) * sizeof *i->corner_m);
-    if (status == STATUS_OK && !i->corner_m) status = STATUS_NO_MEMORY;
+    i->ring_m = malloc(vector_most_corners * sizeof *i->ring_m);
+    if (status == STATUS_OK && !(i->corner_m && i->ring_m)) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = vectors_open(&vectors, i->from->buildings, "terrain.buildings");
     if (status == STATUS_OK) status = vectors_each(&end, &vectors, box_deg, take_part, i, "terrain.buildings");
     vectors_close(&vectors);
     culture_rules_close(&i->rules);
-    free(i->corner_m);
+    free(i->corner_m), free(i->ring_m);
     i->report->features = end.features;
     i->report->left[CULTURE_LEFT_OUTSIDE] += (int)fmin((double)end.outside, 1e9);
     i->report->left[CULTURE_LEFT_OTHER] += (int)fmin((double)end.shapeless, 1e9);
@@ -400,7 +424,7 @@ Status culture_open(Culture *out, CultureReport *report, const CultureFiles *fro
         culture_free(&culture);
         return status;
     }
-    for (int n = 0; n < culture.trees; n++) r.trees_marked += culture.tree[n].marked;
+    for (int n = 0; n < culture.trees; n++) r.trees_marked += culture.tree[n].mark != PLANT_UNMARKED;
     for (int k = 0; k < CULTURE_LEFTS; k++) culture.left_out += r.left[k];
     say(from, &culture, &r);
     *out = culture;

@@ -37,7 +37,7 @@ typedef enum HeightFrom { HEIGHT_FROM_FILE, HEIGHT_FROM_LEVELS, HEIGHT_FROM_USE,
 typedef struct CultureReport {
     int64_t features; /* read */
     int     left[CULTURE_LEFTS];
-    int     courtyards;                /* inner rings, which are built over */
+    int     courtyards, built_over;    /* inner rings: open to the sky; too small or entangled, and built over */
     int     mended;                    /* numbers that could not be true and were left aside: a height of 9999 m */
     int     unread;                    /* numbers that are none: `tall` */
     int     height_from[HEIGHTS_FROM]; /* buildings whose height the files state, by levels, by use and size */

@@ -88,9 +88,10 @@ typedef struct CultureFacts {
     int                heated;   /* 0, 1 */
     double height_m, eaves_m, part_height_m, ridge_rad, chimneys, levels, roof_height_m, roof_levels, width_m, lanes,
         direction_rad;
-    bool     bridge, hidden, ruined, marked;
-    int      unread; /* numbers that are none */
-    uint64_t id;     /* 0: none */
+    bool      bridge, hidden, ruined;
+    PlantMark mark;
+    int       unread; /* numbers that are none */
+    uint64_t  id;     /* 0: none */
 } CultureFacts;
 
 void culture_facts(CultureFacts *out, const CultureRules *rules, int tags, const char *const *name,
@@ -108,9 +109,9 @@ static const uint64_t culture_mix_seed = 0xcbf29ce484222325u;
 /* ---- culture_building.c ---- */
 
 /* All of a building but its outline, place and id, from its facts and its outline in ENU. mended: how many numbers
- * could not be a building's and were left aside. */
+ * could not be a building's and were left aside. hollow: the outline goes round courtyards. */
 void culture_building_make(Building *out, HeightFrom *from, int *mended, const CultureFacts *facts,
-                           const double (*corner_m)[2], int corners, double area_m2);
+                           const double (*corner_m)[2], int corners, double area_m2, bool hollow);
 /* Sides of the smallest rectangle about an outline that has an edge of it for a side, longer first, and the direction
  * of the longer, counter-clockwise from east. */
 void culture_rectangle(double side_m[2], double *along_rad, const double (*corner_m)[2], int corners);
@@ -125,5 +126,6 @@ void culture_place(double p_m[2], const CultureFiles *from, double lon_rad, doub
 Status culture_trees_read(Culture *culture, CultureReport *report, const CultureFiles *from);
 /* The kind of plant of a name; PLANT_STANDING: none that stands by itself. */
 PlantKind culture_plant(const char *name);
+PlantMark culture_mark(const char *word); /* PLANT_MARKS: no such word */
 
 #endif

@@ -9,8 +9,8 @@ static const char *const use_names[] = {"house", "flats", "barn", "shed", "hall"
 static const char *const roof_names[] = {"flat", "gabled", "hipped", "pyramidal", "skillion"};
 static const char *const fabric_names[] = {"brick", "render", "stone", "timber", "concrete",
                                            "sheet", "tile",   "slate", "felt",   "thatch"};
-static const char *const line_names[] = {"wall",   "fence", "wire_fence", "power_line",
-                                         "bridge", "road",  "track",      "water"};
+static const char *const line_names[] = {"wall", "fence", "wire_fence", "power_line", "bridge",
+                                         "road", "track", "water",      "yard"};
 static const char *const point_names[] = {"pole",      "lamp", "sign",  "tank",    "silo",
                                           "container", "heap", "stack", "chimney", "mast"};
 static const char *const way_names[] = {"along", "across"};
@@ -320,7 +320,7 @@ static void apply(CultureFacts *f, const CultureRule *rule, const char *value)
         f->ruined = true;
         break;
     case MAKES_MARKED:
-        f->marked = true;
+        f->mark = culture_mark(value) < PLANT_MARKS ? culture_mark(value) : MARK_WHITE;
         break;
     case MAKES_ID:
         f->id = culture_mix(culture_mix_seed, value, strlen(value));

@@ -12,7 +12,7 @@ PlantKind culture_plant(const char *name)
 
 typedef struct TreeRow {
     double lat_deg, lon_deg, x_m, y_m, height_m;
-    int    kind, marked;
+    int    kind, mark;
 } TreeRow;
 
 static const char *parse_kind(void *member, const char *text)
@@ -23,11 +23,25 @@ static const char *parse_kind(void *member, const char *text)
                                  : "pine, alder, birch, english_oak, sessile_oak, red_oak, white_oak, bush or hedge";
 }
 
+PlantMark culture_mark(const char *word)
+{
+    for (int k = 0; k < PLANT_MARKS; k++)
+        if (strcmp(plant_mark_name((PlantMark)k), word) == 0) return (PlantMark)k;
+    return PLANT_MARKS;
+}
+
+static const char *parse_mark(void *member, const char *text)
+{
+    const PlantMark mark = strcmp(text, "yes") == 0 ? MARK_WHITE : culture_mark(text);
+    *(int *)member = (int)mark;
+    return mark < PLANT_MARKS ? NULL : "no, yes (white), white, red, green or blue";
+}
+
 #define REST                                                                                                           \
     {"kind", TABLE_OWN, TABLE_AT(TreeRow, kind), .absent = TABLE_LATER, .parse = parse_kind},                          \
         {"height_m", TABLE_DOUBLE, TABLE_AT(TreeRow, height_m), .low = 0.3, .high = 100, .absent = TABLE_OPTIONAL},    \
     {                                                                                                                  \
-        "marked", TABLE_CHOICE, TABLE_AT(TreeRow, marked), .absent = TABLE_OPTIONAL, .choices = "no, yes"              \
+        "marked", TABLE_OWN, TABLE_AT(TreeRow, mark), .absent = TABLE_OPTIONAL, .parse = parse_mark                    \
     }
 static const TableColumn on_earth[] = {{"lat", TABLE_DOUBLE, TABLE_AT(TreeRow, lat_deg), .low = -90, .high = 90},
                                        {"lon", TABLE_DOUBLE, TABLE_AT(TreeRow, lon_deg), .low = -180, .high = 180},
@@ -66,7 +80,7 @@ Status culture_trees_read(Culture *culture, CultureReport *report, const Culture
                                                      .y_m = p_m[1],
                                                      .height_m = isnan(row.height_m) ? 0 : (float)row.height_m,
                                                      .kind = (uint8_t)row.kind,
-                                                     .marked = row.marked == 1});
+                                                     .mark = (uint8_t)row.mark});
     }
     table_rows_close(&rows);
     return status;

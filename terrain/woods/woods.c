@@ -362,6 +362,8 @@ Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *c
     Status status = woods_source_open(&source, landscape, config, config->half_width_m);
     if (status != STATUS_OK) return status;
     memcpy(woods.origin_enu, source->origin_enu, sizeof woods.origin_enu);
+    for (int n = 0; config->culture && n < config->culture->trees; n++)
+        woods.marked += config->culture->tree[n].mark != 0;
     woods.nx = source->nx, woods.ny = source->ny;
     status = need(&woods, source, config, pool);
     woods.low = source;

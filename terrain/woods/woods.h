@@ -65,6 +65,7 @@ typedef struct Woods {
     int              count;
     Plant           *plant; /* [count] square by square, and in a fixed order within a square */
     int              by_kind[PLANT_KINDS];
+    int              marked;   /* trees with a painted mark, of WoodsConfig.culture */
     int              left_out; /* trees left out beyond most_trees */
     uint8_t         *bare;     /* [nx * ny] 1: the square's trees were left out; NULL: no square's were */
     double           reach_m;  /* distance from the places, else from centre_m, within which no tree was left out */

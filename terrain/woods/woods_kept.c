@@ -41,7 +41,7 @@ static bool are_listed(const Woods *w)
 
 bool woods_is_plant(const Plant *p)
 {
-    return p->kind < PLANT_STANDING && p->height > 0 && isfinite(p->p_m[0]) && isfinite(p->p_m[1]) &&
+    return p->kind < PLANT_STANDING && plant_height_m(p) > 0 && isfinite(p->p_m[0]) && isfinite(p->p_m[1]) &&
            isfinite(p->p_m[2]);
 }
 

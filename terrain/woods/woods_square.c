@@ -170,7 +170,7 @@ Plant woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double wi
         const double u = woods_unit(woods_hash(hash, k, 1, 0)) + woods_unit(woods_hash(hash, k, 2, 0)) - 1;
         p.lean[k] = (int8_t)lrint(clamp(u * 62, -89, 89)); /* both at once stay within 15 degrees */
     }
-    p.height = (uint16_t)clamp(rint(height_m / plant_height_step_m), 1, 65535);
+    p.height = (uint16_t)clamp(rint(height_m / plant_height_step_m), 1, plant_most_height);
     p.width = (uint8_t)clamp(rint(128 * width), 16, 255);
     return p;
 }
@@ -282,7 +282,9 @@ static void add_trees(SquarePlants *out, const WoodsSource *s, int i, int j)
         const double height_m = t->height_m > 0 ? (double)t->height_m : mean_m[t->kind];
         const double width =
             t->kind == PLANT_HEDGE ? clamp(1.5 / (height_m * plant_crown_share(PLANT_HEDGE)), 0.6, 1.99) : 1;
-        woods_add_plant(out, s, woods_draw_plant(hash, (PlantKind)t->kind, height_m, width), t->x_m, t->y_m);
+        Plant plant = woods_draw_plant(hash, (PlantKind)t->kind, height_m, width);
+        plant_paint(&plant, (PlantMark)t->mark);
+        woods_add_plant(out, s, plant, t->x_m, t->y_m);
     }
 }
 

@@ -25,6 +25,12 @@ static const struct {
     [PLANT_ROCK] = {"boulder", false, 0.65},
 };
 
+const char *plant_mark_name(PlantMark mark)
+{
+    static const char *const name[PLANT_MARKS] = {"no", "white", "red", "green", "blue"};
+    return mark < PLANT_MARKS ? name[mark] : "no";
+}
+
 const char *plant_name(PlantKind kind) { return kind >= 0 && kind < PLANT_KINDS ? kinds[kind].name : "none"; }
 
 /* The kind of that name; PLANT_KINDS: there is none. */

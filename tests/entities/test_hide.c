@@ -84,8 +84,9 @@ static void places_are_of_their_kind(void **state)
     Cast               *cast = cast_of(MANY);
     HideGround          ground;
     assert_int_equal(cast->hidden_count, 11);
-    assert_int_equal(hide_ground_open(&ground, &cast->ground.stored, 1, (const double[2]){0, 0}, half_m, NULL),
-                     STATUS_OK);
+    assert_int_equal(
+        hide_ground_open(&ground, &(HideWorld){&cast->ground.stored, 1, NULL, NULL}, (const double[2]){0, 0}, half_m),
+        STATUS_OK);
     int headings = 0;
     for (int n = 0; n < cast->hidden_count; n++) {
         const CastHidden    *own = &cast->hidden[n];
@@ -177,7 +178,9 @@ static void a_wall_hides_what_is_behind_it(void **state)
     assert_int_equal(catalog_open(&catalog, path, 0.05), STATUS_OK);
     wall = catalog_find(catalog, (DisEntityType){5, 1, 0, 91, 0, 0, 0}, NULL, NULL);
     low = catalog_find(catalog, (DisEntityType){6, 1, 225, 1, 0, 0, 0}, NULL, NULL); /* a pallet, 1.2 m high */
-    assert_int_equal(hide_ground_open(&ground, &cast->ground.stored, 1, (const double[2]){0, 0}, 100, NULL), STATUS_OK);
+    assert_int_equal(
+        hide_ground_open(&ground, &(HideWorld){&cast->ground.stored, 1, NULL, NULL}, (const double[2]){0, 0}, 100),
+        STATUS_OK);
     for (int n = 0; n < ground.woods.count; n++) ground.woods.plant[n].p_m[2] = -1000; /* no plant is in the way */
     assert_int_equal(hide_shape_open(&box.shape, catalog_model(catalog, wall)), STATUS_OK);
     assert_int_equal(hide_shape_open(&shape, catalog_model(catalog, low)), STATUS_OK);

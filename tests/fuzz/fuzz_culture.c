@@ -20,16 +20,23 @@ static size_t seed_reply(uint8_t *out, uint32_t index)
     size_t            at = 0;
     for (uint32_t n = 0; n < 1 + index % 3; n++) {
         const int         shape = (int)((index + n) % WIRE_SHAPES), corners = shape == WIRE_POINT ? 1 : 3;
-        const WireFeature w = {.octets = (uint32_t)(sizeof w + 16 * (size_t)corners + 24),
+        const int32_t     ring[2] = {3, 0}, rings = shape == WIRE_POLYGON && index % 2;
+        const size_t      inner = rings ? 16 * 3 + sizeof ring : 0;
+        const WireFeature w = {.octets = (uint32_t)(sizeof w + 16 * (size_t)corners + inner + 24),
                                .shape = shape,
                                .corners = corners,
                                .tags = 2,
                                .texts = sizeof tags,
-                               .number = n};
+                               .number = n,
+                               .holes = rings,
+                               .rings = rings,
+                               .ring_corners = 3 * rings};
         memcpy(out + at, &w, sizeof w);
         memcpy(out + at + sizeof w, place, 16 * (size_t)corners);
-        memset(out + at + sizeof w + 16 * (size_t)corners, 0, 24);
-        memcpy(out + at + sizeof w + 16 * (size_t)corners, tags, sizeof tags);
+        uint8_t *to = out + at + sizeof w + 16 * (size_t)corners;
+        if (rings) memcpy(to, place, 16 * 3), memcpy(to + 16 * 3, ring, sizeof ring);
+        memset(to + inner, 0, 24);
+        memcpy(to + inner, tags, sizeof tags);
         at += w.octets;
     }
     return at;
@@ -85,7 +92,7 @@ static void make(int tags, const char *const *name, const char *const *value)
     if (f.use >= BUILDING_USES || f.roof >= ROOF_SHAPES || f.wall >= FABRICS || f.cover >= FABRICS ||
         f.plant >= PLANT_STANDING || f.ground >= SURFACE_COUNT)
         abort();
-    culture_building_make(&b, &from, &mended, &f, p, 4, 108);
+    culture_building_make(&b, &from, &mended, &f, p, 4, 108, false);
     if (from >= HEIGHTS_FROM || b.levels < 1 || culture_add_building(&c, &b, p, 4) != STATUS_OK || c.buildings != 1)
         abort();
     culture_free(&c);

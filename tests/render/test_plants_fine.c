@@ -201,13 +201,14 @@ static void many_surfaces_at_once(void **state)
     static ForestHit    hit[count];
     static double       o[3][count], d[3][count], range_m[count], n_geo[3][count], n_enu[3][count];
     static float        albedo[count], radius_m[count], open_up[count], open_down[count];
+    static uint8_t      mark[count];
     const ForestHit    *list[count];
     const ForestRays    to = {{o[0], o[1], o[2]}, {d[0], d[1], d[2]}, range_m};
     Plant               straight[PLANT_STANDING];
     ForestFrame         frame;
     Arena              *arena = arena_create();
     ForestSurfaces      all = {
-             {n_geo[0], n_geo[1], n_geo[2]}, {n_enu[0], n_enu[1], n_enu[2]}, albedo, radius_m, open_up, open_down};
+             {n_geo[0], n_geo[1], n_geo[2]}, {n_enu[0], n_enu[1], n_enu[2]}, albedo, radius_m, open_up, open_down, mark};
     int wood = 0;
     (void)state;
     memcpy(straight, plant, sizeof straight);
@@ -245,7 +246,8 @@ static void many_surfaces_at_once(void **state)
         forest_surface(&one, &frame, &hit[i], eye, way, range_m[i], (float)(range_m[i] / frame.per_rad));
         assert_memory_equal(one.n_geo, geo, sizeof geo);
         assert_memory_equal(one.n_enu, enu, sizeof enu);
-        CHECK(one.albedo == albedo[i] && one.open_up == open_up[i] && one.open_down == open_down[i]);
+        CHECK(one.albedo == albedo[i] && one.open_up == open_up[i] && one.open_down == open_down[i] &&
+              one.mark == mark[i]);
         CHECK(one.radius_m == radius_m[i] && (radius_m[i] > 0) == (hit[i].organ == PLANT_BARK));
     }
     CHECK(wood == count / 5 && fabs(n_geo[2][flat]) == 1);

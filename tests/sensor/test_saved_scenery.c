@@ -41,7 +41,7 @@ static Culture hamlet(void)
     assert_int_equal(culture_add_line(&c, &road, way_m, 3), STATUS_OK);
     const CulturePoint tank = {.id = 9, .x_m = 30, .y_m = 40, .base_m = 3, .size_m = {4, 4, 6}, .kind = CULTURE_TANK};
     assert_int_equal(culture_add_point(&c, &tank), STATUS_OK);
-    const CultureTree tree = {.id = 10, .x_m = -20, .y_m = 20, .height_m = 12, .marked = true};
+    const CultureTree tree = {.id = 10, .x_m = -20, .y_m = 20, .height_m = 12, .mark = MARK_RED};
     assert_int_equal(culture_add_tree(&c, &tree), STATUS_OK);
     assert_int_equal(culture_index(&c), STATUS_OK);
     assert_int_equal(c.left_out, 0);
@@ -112,7 +112,7 @@ static void records_and_what_follows_from_them(void **state)
     CHECK(got.built && read->buildings == 3 && read->lines == 2 && read->points == 1 && read->trees == 1);
     CHECK(memcmp(read->corner_m, c.corner_m, (size_t)c.corners * sizeof *c.corner_m) == 0);
     CHECK(memcmp(read->building, c.building, 3 * sizeof *c.building) == 0);
-    CHECK(read->line[1].surface == SURFACE_ROAD && read->tree->marked && read->point->size_m[2] == 6);
+    CHECK(read->line[1].surface == SURFACE_ROAD && read->tree->mark == MARK_RED && read->point->size_m[2] == 6);
 
     assert_int_equal(saved_scenery_make(&again, &landscape, &got, false), STATUS_OK);
     CHECK(again.scenery.objects == made.scenery.objects && again.scenery.models == made.scenery.models);

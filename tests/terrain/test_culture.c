@@ -320,7 +320,7 @@ static void a_key_follows_from_every_record(void **state)
         assert_int_equal(culture_add_building(&c, &b, p, 4), STATUS_OK);
         const CultureLine  line = {.width_m = k == 2 ? 4 : 3};
         const CulturePoint point = {.size_m = {1, 1, k == 3 ? 2 : 1}};
-        const CultureTree  tree = {.x_m = 5, .marked = k == 4};
+        const CultureTree  tree = {.x_m = 5, .mark = (uint8_t)(k == 4)};
         assert_int_equal(culture_add_line(&c, &line, p, 2), STATUS_OK);
         assert_int_equal(culture_add_point(&c, &point), STATUS_OK);
         assert_int_equal(culture_add_tree(&c, &tree), STATUS_OK);

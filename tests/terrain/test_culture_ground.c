@@ -159,7 +159,7 @@ static void trees_stand_where_they_are(void **state)
                                .y_m = 780 * (random_uniform(8, 2, 0, (uint64_t)k) - 0.5),
                                .height_m = k % 3 ? 5 + 0.05f * (float)k : 0,
                                .kind = (uint8_t)(k % PLANT_STANDING),
-                               .marked = k % 2};
+                               .mark = (uint8_t)(k % 2)};
         assert_int_equal(culture_add_tree(&c, &t), STATUS_OK);
     }
     assert_int_equal(culture_index(&c), STATUS_OK);

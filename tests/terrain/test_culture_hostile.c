@@ -284,6 +284,36 @@ static void replies_are_checked(void **state)
             const bool taken = vector_part_read(&part, &at, data, sizeof room);
             CHECK(!taken || (field == 3 || field == 6 || field == 7)); /* holes, file, part: any number will do */
         }
+    for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) /* rings that are not there */
+        for (int field = 0; field < 2; field++) {
+            WireFeature bad = w;
+            *(field ? &bad.rings : &bad.ring_corners) = odd[k];
+            memcpy(data, &bad, sizeof bad);
+            at = 0;
+            CHECK(!vector_part_read(&part, &at, data, sizeof room));
+        }
+    /* a triangle with a ring of three corners; the ring's number must be that of its corners */
+    WireFeature   yard = {.octets = sizeof yard + 96 + 8 + 16,
+                          .shape = WIRE_POLYGON,
+                          .corners = 3,
+                          .tags = 1,
+                          .texts = 13,
+                          .rings = 1,
+                          .ring_corners = 3,
+                          .holes = 1};
+    const double  six[6][2] = {{0, 0}, {4, 0}, {0, 4}, {1, 1}, {2, 1}, {1, 2}};
+    const int32_t sizes[] = {3, 2, 4, -3, INT32_MAX};
+    memcpy(data, &yard, sizeof yard), memcpy(data + sizeof yard, six, sizeof six);
+    memset(data + sizeof yard + 96, 0, 24), memcpy(data + sizeof yard + 104, "building\0yes", 13);
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+        memcpy(data + sizeof yard + 96, &sizes[k], 4);
+        at = 0;
+        const bool taken = vector_part_read(&part, &at, data, sizeof room);
+        CHECK(taken == (k == 0));
+        if (taken) CHECK(part.rings == 1 && part.ring[0] == 3 && part.ring_lon_lat_rad[2][1] == 2 && at == yard.octets);
+    }
+    memcpy(data + sizeof w, place, sizeof place);
+    memcpy(data + sizeof w + 16, "building\0yes", 13);
     memcpy(data, &w, sizeof w);
     memset(data + sizeof w + 16, 'x', 16); /* no end */
     at = 0;

@@ -223,7 +223,7 @@ static void rows_are_clipped(void **state)
     culture_free(&c);
 }
 
-static void courtyards_are_counted(void **state)
+static void courtyards_are_open(void **state)
 {
     (void)state;
     Culture       c;
@@ -235,8 +235,39 @@ static void courtyards_are_counted(void **state)
         "[[13.0203,47.0503],[13.0206,47.0503],[13.0206,47.0506],[13.0203,47.0503]]],"
         "[[[13.03,47.05],[13.031,47.05],[13.031,47.051],[13.03,47.05]]]]}}]}");
     assert_int_equal(open_names(&c, &r, "yard.geojson", NULL), STATUS_OK);
-    CHECK(c.buildings == 2 && c.building[0].corners == 4 && c.building[1].corners == 3 && r.courtyards == 1);
+    CHECK(c.buildings == 2 && c.building[0].corners == 4 + 3 + 4 && c.building[1].corners == 3);
+    CHECK(r.courtyards == 1 && r.built_over == 0);
+    /* the triangle of the courtyard is 0.0003 by 0.0003 of the 0.001 by 0.001 degrees: 4.5 % of the square */
+    double twice = 0;
+    for (int k = 0; k < c.building[0].corners; k++) {
+        const double *a = c.corner_m[k], *b = c.corner_m[(k + 1) % c.building[0].corners];
+        twice += a[0] * b[1] - a[1] * b[0];
+    }
+    const double across_m = 0.001 * 111320 * cos(47.0505 * pi_rad / 180), square_m2 = across_m * 0.001 * 111170;
+    CHECK_NEAR(0.5 * twice / square_m2, 0.955, 0.004);
     CHECK(c.building[0].id != c.building[1].id);
+    culture_free(&c);
+    /* 44 x 36 m about a courtyard of 22 x 14 m: 1276 m2 between 232 m of walls, wings of 10.6 m, whose roofs rise by
+     * 0.84 of half of that, less the two sides of the slit; without the courtyard by 0.84 of 18 m, 12 at most */
+    const double square[8][2] = {{-22, -18}, {22, -18}, {22, 18}, {-22, 18}, {-11, -7}, {11, -7}, {11, 7}, {-11, 7}};
+    char         block[2048];
+    int          n = snprintf(block, sizeof block,
+                              "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{"
+                                       "\"building\":\"apartments\",\"roof:shape\":\"gabled\",\"building:levels\":\"3\"},\"geometry\":{"
+                                       "\"type\":\"Polygon\",\"coordinates\":[[");
+    for (int k = 0; k < 10; k++) {
+        const double *p = square[k < 5 ? k % 4 : 4 + (k - 5) % 4];
+        n += snprintf(block + n, sizeof block - (size_t)n, "%s[%.9f,%.9f]",
+                      k == 5 ? "],["
+                      : k    ? ","
+                             : "",
+                      13.02 + p[0] / (111320 * cos(47.05 * pi_rad / 180)), 47.05 + p[1] / 111170);
+    }
+    snprintf(block + n, sizeof block - (size_t)n, "]]}}]}");
+    save("block.geojson", block);
+    assert_int_equal(open_names(&c, &r, "block.geojson", NULL), STATUS_OK);
+    CHECK(c.buildings == 1 && r.courtyards == 1 && c.building[0].roof == ROOF_GABLED);
+    CHECK_NEAR((double)(c.building[0].ridge_m - c.building[0].eaves_m), 0.42 * 2 * 1276 / (232 + 2 * 11), 0.1);
     culture_free(&c);
 }
 
@@ -255,14 +286,14 @@ static void a_table_of_trees(void **state)
     save("t.csv", text);
     save("xy.csv", "x_m,y_m,marked\n10,20,no\n-30.5,40,yes\n99999,0,no\n");
     assert_int_equal(open_names(&c, &r, "", "t.csv"), STATUS_OK);
-    CHECK(c.trees == 2 && r.trees_marked == 1 && c.tree[0].marked && !c.tree[1].marked);
+    CHECK(c.trees == 2 && r.trees_marked == 1 && c.tree[0].mark == MARK_WHITE && !c.tree[1].mark);
     CHECK_NEAR(c.tree[0].x_m, 300, 1e-5);
     CHECK_NEAR(c.tree[0].y_m, -400, 1e-5);
     CHECK(c.tree[0].kind == PLANT_BIRCH && c.tree[0].height_m == 14.5f && c.tree[1].kind == PLANT_PINE &&
           c.tree[1].height_m == 0);
     culture_free(&c);
     assert_int_equal(open_names(&c, &r, "", "xy.csv"), STATUS_OK);
-    CHECK(c.trees == 2 && c.tree[1].x_m == -30.5 && c.tree[1].marked && r.left[CULTURE_LEFT_OUTSIDE] == 1);
+    CHECK(c.trees == 2 && c.tree[1].x_m == -30.5 && c.tree[1].mark == MARK_WHITE && r.left[CULTURE_LEFT_OUTSIDE] == 1);
     culture_free(&c);
     static const char *const bad[] = {"x_m,kind\n1,pine\n",          "x_m,y_m,kind\n1,2,palm\n",      "lat,lon\n91,0\n",
                                       "x_m,y_m,height_m\n1,2,500\n", "x_m,y_m,marked\n1,2,perhaps\n", "height_m\n3\n"};
@@ -280,7 +311,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(places_are_on_the_ground), cmocka_unit_test(three_formats_and_systems_are_one),
         cmocka_unit_test(mixed_features),           cmocka_unit_test(what_cannot_be_is_counted),
-        cmocka_unit_test(rows_are_clipped),         cmocka_unit_test(courtyards_are_counted),
+        cmocka_unit_test(rows_are_clipped),         cmocka_unit_test(courtyards_are_open),
         cmocka_unit_test(a_table_of_trees),
     };
     return cmocka_run_group_tests(tests, open_lab, close_lab);

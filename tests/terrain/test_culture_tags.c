@@ -221,7 +221,7 @@ static void what_a_feature_says(void **state)
     CHECK(facts_of("tunnel=culvert").hidden && facts_of("location=underground").hidden &&
           !facts_of("bridge=no").bridge);
     f = facts_of("natural=tree|leaf_type=needleleaved|marked=yes");
-    CHECK(f.plant == PLANT_PINE && f.marked);
+    CHECK(f.plant == PLANT_PINE && f.mark == MARK_WHITE);
     CHECK(facts_of("natural=tree|species=Quercus rubra").plant == PLANT_RED_OAK);
     f = facts_of("building=yes|height=tall|building:levels=many");
     CHECK(isnan(f.height_m) && isnan(f.levels) && f.unread == 2);
@@ -244,7 +244,7 @@ static Building building_of(const char *tags, double length_m, double width_m, H
     const CultureFacts f = facts_of(tags);
     Building           b;
     *mended = 0;
-    culture_building_make(&b, from, mended, &f, p, 4, length_m * width_m);
+    culture_building_make(&b, from, mended, &f, p, 4, length_m * width_m, false);
     return b;
 }
 

@@ -135,12 +135,13 @@ uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, con
 
 /* What shading needs of a hit. Normals are unit, ENU, on the ray's side; n_enu with the relief of bark. */
 typedef struct ForestSurface {
-    double n_geo[3], n_enu[3];
-    float  albedo;             /* reflectance over that of its material */
-    float  height_share;       /* of the plant's height at which it lies, 0 .. 1 */
-    float  radius_m;           /* of the branch; leaves: 0 */
-    float  open_up, open_down; /* as PlantQuad */
-    float  height_m;           /* of the plant */
+    double  n_geo[3], n_enu[3];
+    float   albedo;             /* reflectance over that of its material */
+    float   height_share;       /* of the plant's height at which it lies, 0 .. 1 */
+    float   radius_m;           /* of the branch; leaves: 0 */
+    float   open_up, open_down; /* as PlantQuad */
+    float   height_m;           /* of the plant */
+    uint8_t mark;               /* PlantMark: what is painted there */
 } ForestSurface;
 void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const double o_enu[3],
                     const double d_enu[3], double range_m, float footprint_m);
@@ -151,8 +152,9 @@ typedef struct ForestRays {
     const double *o_enu[3], *d_enu[3], *range_m;
 } ForestRays;
 typedef struct ForestSurfaces {
-    double *n_geo[3], *n_enu[3];
-    float  *albedo, *radius_m, *open_up, *open_down;
+    double  *n_geo[3], *n_enu[3];
+    float   *albedo, *radius_m, *open_up, *open_down;
+    uint8_t *mark;
 } ForestSurfaces;
 void forest_surfaces(ForestSurfaces *out, const ForestFrame *frame, const ForestHit *const *hit, int count,
                      const ForestRays *rays);

@@ -175,7 +175,7 @@ static inline double plant_rank(const Plant *plant)
 {
     uint64_t h;
     memcpy(&h, plant->p_m, sizeof h);
-    h ^= ((uint64_t)plant->twist << 32 | plant->height) * 0x9e3779b97f4a7c15u;
+    h ^= ((uint64_t)plant->twist << 32 | (plant->height & plant_most_height)) * 0x9e3779b97f4a7c15u;
     h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
     h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
     return (double)(h >> 11) * 0x1p-53;

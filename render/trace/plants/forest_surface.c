@@ -69,6 +69,18 @@ typedef struct SurfaceRay {
     double o_enu[3], d_enu[3], range_m;
 } SurfaceRay;
 
+/* What is painted on the wood at a height: of the trunk alone, not of branches beside it. */
+static PlantMark mark_at(const Plant *plant, float height_m, float radius_m)
+{
+    static const double trunk = 0.6; /* of woods_trunk_m: a trunk tapers, and no branch near the ground is as thick */
+    const PlantMark     mark = plant_mark(plant);
+    if (mark == PLANT_UNMARKED || !((double)height_m >= plant_mark_low_m && (double)height_m <= plant_mark_high_m))
+        return PLANT_UNMARKED;
+    return (double)radius_m >= trunk * woods_trunk_m(plant) ? mark : PLANT_UNMARKED;
+}
+
+static const float paint_shows = 0.4f; /* how much of the bark's pattern a coat of paint leaves; estimate */
+
 static void surface_of(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const Stand *stand,
                        const SurfaceRay *ray, float footprint_m)
 {
@@ -104,6 +116,8 @@ static void surface_of(ForestSurface *out, const ForestFrame *frame, const Fores
     float       slope[2] = {0, 0};
     plants_bark(&out->albedo, slope, (PlantKind)hit->kind, hit->plant, p_m, footprint_m);
     bark_normal(n, quad, &plane, hit->uv, slope);
+    out->mark = (uint8_t)mark_at(plant, p_m[2], out->radius_m);
+    if (out->mark) out->albedo = 1 + paint_shows * (out->albedo - 1);
     turn_normal(out->n_enu, stand->axis, stand->per, n);
     if (v3_dot(out->n_enu, out->n_geo) < 0) v3_scale(out->n_enu, -1, out->n_enu);
 }
@@ -187,6 +201,7 @@ static void add_leaf(Leaves *l, ForestSurfaces *out, int at, const ForestFrame *
     plant_openness(open_share, shape, hit->quad);
     out->albedo[at] = leaf.albedo;
     out->radius_m[at] = (float)(quad->radius * plant_height_m(stand->plant));
+    out->mark[at] = PLANT_UNMARKED;
     out->open_up[at] = open_share[0], out->open_down[at] = open_share[1];
     l->hit[k] = at;
     l->slope[0][k] = (double)leaf.slope[0], l->slope[1][k] = (double)leaf.slope[1];
@@ -207,7 +222,7 @@ static void put_one(ForestSurfaces *out, int at, const ForestFrame *frame, const
     ForestSurface    one;
     surface_of(&one, frame, hit, stand, &ray, (float)(rays->range_m[at] / frame->per_rad));
     for (int c = 0; c < 3; c++) out->n_geo[c][at] = one.n_geo[c], out->n_enu[c][at] = one.n_enu[c];
-    out->albedo[at] = one.albedo, out->radius_m[at] = one.radius_m;
+    out->albedo[at] = one.albedo, out->radius_m[at] = one.radius_m, out->mark[at] = one.mark;
     out->open_up[at] = one.open_up, out->open_down[at] = one.open_down;
 }
 

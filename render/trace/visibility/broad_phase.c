@@ -1,6 +1,7 @@
 /* render/trace/visibility/broad_phase.c: builds the tree over spheres, and finds what lies in a volume. */
 #include "render/trace/visibility/broad_phase_private.h"
 
+#include <limits.h>
 #include <stdlib.h>
 
 enum { bitmap_bits = 1 << 18 };
@@ -169,6 +170,45 @@ static void sort_items(int *list, int count)
         for (uint64_t left = bitmap[w]; left; left &= left - 1) list[at++] = low + 64 * w + __builtin_ctzll(left);
 }
 
+/* A query: whether the box of a node may hold something of it, and whether an item is. */
+typedef struct Query {
+    bool (*may_hold)(const void *of, const BroadPhase *tree, int node);
+    bool (*takes)(const void *of, const BroadPhase *tree, int k);
+    const void *of;
+} Query;
+
+/* Lists the items that a query takes, in the order of the tree; -1: there are more than most. */
+static inline __attribute__((always_inline)) int walk(int *list, int most, const BroadPhase *tree, const Query *query)
+{
+    int stack[deepest], depth = 0, count = 0;
+    if (tree->count == 0) return 0;
+    stack[depth++] = 1;
+    while (depth > 0) {
+        const int n = stack[--depth];
+        if (!query->may_hold(query->of, tree, n)) continue;
+        if (n < tree->leaves) {
+            stack[depth++] = 2 * n + 1;
+            stack[depth++] = 2 * n;
+            continue;
+        }
+        const int first = (n - tree->leaves) * leaf_items;
+        for (int k = first; k < first + leaf_items && k < tree->count; k++) {
+            if (!query->takes(query->of, tree, k)) continue;
+            if (count == most) return -1;
+            list[count++] = tree->item[k];
+        }
+    }
+    return count;
+}
+
+/* ---- within planes ------------------------------------------------------------------------------ */
+
+typedef struct InPlanes {
+    const double (*plane)[4];
+    int              planes;
+    const BroadLift *lift;
+} InPlanes;
+
 /* Whether a box lies beyond a plane. */
 static bool box_beyond(const Box *box, const double plane[4])
 {
@@ -177,138 +217,129 @@ static bool box_beyond(const Box *box, const double plane[4])
     return farthest < plane[3];
 }
 
+static bool box_in_planes(const Box *box, const InPlanes *q)
+{
+    for (int p = 0; p < q->planes; p++)
+        if (box_beyond(box, q->plane[p])) return false;
+    return true;
+}
+
+static bool is_box(const Box *box) { return box->low[0] <= box->high[0]; }
+
+static bool node_in_planes(const void *of, const BroadPhase *tree, int n)
+{
+    return is_box(&tree->node[n]) && box_in_planes(&tree->node[n], of);
+}
+
+static bool sphere_in_planes(const void *of, const BroadPhase *tree, int k)
+{
+    const InPlanes *q = of;
+    const double   *s = tree->sphere[k];
+    const double    room_m = 1e-6 + 1e-9 * s[3] + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
+    for (int p = 0; p < q->planes; p++)
+        if (v3_dot(q->plane[p], s) + s[3] + room_m < q->plane[p][3]) return false;
+    return true;
+}
+
 int broad_phase_in_planes(int *list, const BroadPhase *tree, const double (*plane)[4], int planes)
 {
-    int stack[deepest], depth = 0, count = 0;
-    if (tree->count == 0) return 0;
-    stack[depth++] = 1;
-    while (depth > 0) {
-        const int  n = stack[--depth];
-        const Box *box = &tree->node[n];
-        bool       beyond = !(box->low[0] <= box->high[0]);
-        for (int p = 0; p < planes && !beyond; p++) beyond = box_beyond(box, plane[p]);
-        if (beyond) continue;
-        if (n < tree->leaves) {
-            stack[depth++] = 2 * n + 1;
-            stack[depth++] = 2 * n;
-            continue;
-        }
-        const int first = (n - tree->leaves) * leaf_items;
-        for (int k = first; k < first + leaf_items && k < tree->count; k++) {
-            const double *s = tree->sphere[k];
-            const double  room_m = 1e-6 + 1e-9 * s[3] + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
-            beyond = false;
-            for (int p = 0; p < planes && !beyond; p++) beyond = v3_dot(plane[p], s) + s[3] + room_m < plane[p][3];
-            if (!beyond) list[count++] = tree->item[k];
-        }
-    }
+    const int count =
+        walk(list, INT_MAX, tree, &(Query){node_in_planes, sphere_in_planes, &(InPlanes){plane, planes, NULL}});
     sort_items(list, count);
     return count;
+}
+
+static bool raised_in_planes(const Box *box, const InPlanes *q)
+{
+    if (!q->lift) return box_in_planes(box, q);
+    const Box above = raised(box, q->lift);
+    return box_in_planes(&above, q);
+}
+
+static bool ray_node_in_planes(const void *of, const BroadPhase *tree, int n)
+{
+    return is_box(&tree->ray_node[n]) && raised_in_planes(&tree->ray_node[n], of);
+}
+
+static bool item_box_in_planes(const void *of, const BroadPhase *tree, int k)
+{
+    return raised_in_planes(&tree->box[k], of);
 }
 
 int broad_phase_some_in_planes(int *list, int most, const BroadPhase *tree, const BroadLift *lift,
                                const double (*plane)[4], int planes)
 {
-    int stack[deepest], depth = 0, count = 0;
-    if (tree->count == 0) return 0;
-    stack[depth++] = 1;
-    while (depth > 0) {
-        const int n = stack[--depth];
-        Box       box = tree->ray_node[n];
-        bool      beyond = !(box.low[0] <= box.high[0]);
-        if (!beyond && lift) box = raised(&box, lift);
-        for (int p = 0; p < planes && !beyond; p++) beyond = box_beyond(&box, plane[p]);
-        if (beyond) continue;
-        if (n < tree->leaves) {
-            stack[depth++] = 2 * n + 1;
-            stack[depth++] = 2 * n;
-            continue;
-        }
-        const int first = (n - tree->leaves) * leaf_items;
-        for (int k = first; k < first + leaf_items && k < tree->count; k++) {
-            box = lift ? raised(&tree->box[k], lift) : tree->box[k];
-            beyond = false;
-            for (int p = 0; p < planes && !beyond; p++) beyond = box_beyond(&box, plane[p]);
-            if (beyond) continue;
-            if (count == most) return -1;
-            list[count++] = tree->item[k];
-        }
-    }
-    return count;
+    return walk(list, most, tree, &(Query){ray_node_in_planes, item_box_in_planes, &(InPlanes){plane, planes, lift}});
 }
 
-static bool boxes_touch(const Box *box, const double low[3], const double high[3], double more_m)
+/* ---- near a box --------------------------------------------------------------------------------- */
+
+typedef struct NearBox {
+    const double *low, *high;
+    double        more_m;
+} NearBox;
+
+static bool boxes_touch(const Box *box, const NearBox *q)
 {
     for (int c = 0; c < 3; c++)
-        if (!(box->low[c] - more_m <= high[c] && box->high[c] + more_m >= low[c])) return false;
+        if (!(box->low[c] - q->more_m <= q->high[c] && box->high[c] + q->more_m >= q->low[c])) return false;
     return true;
+}
+
+static bool node_touches(const void *of, const BroadPhase *tree, int n) { return boxes_touch(&tree->node[n], of); }
+
+static bool sphere_touches(const void *of, const BroadPhase *tree, int k)
+{
+    const Box box = box_of_sphere(tree->sphere[k]);
+    return boxes_touch(&box, of);
 }
 
 int broad_phase_near_box(int *list, const BroadPhase *tree, const double low[3], const double high[3], double more_m)
 {
-    int stack[deepest], depth = 0, count = 0;
-    if (tree->count == 0) return 0;
-    stack[depth++] = 1;
-    while (depth > 0) {
-        const int n = stack[--depth];
-        if (!boxes_touch(&tree->node[n], low, high, more_m)) continue;
-        if (n < tree->leaves) {
-            stack[depth++] = 2 * n + 1;
-            stack[depth++] = 2 * n;
-            continue;
-        }
-        const int first = (n - tree->leaves) * leaf_items;
-        for (int k = first; k < first + leaf_items && k < tree->count; k++) {
-            const Box box = box_of_sphere(tree->sphere[k]);
-            if (boxes_touch(&box, low, high, more_m)) list[count++] = tree->item[k];
-        }
-    }
+    const int count = walk(list, INT_MAX, tree, &(Query){node_touches, sphere_touches, &(NearBox){low, high, more_m}});
     sort_items(list, count);
     return count;
 }
 
+/* ---- swept along a direction -------------------------------------------------------------------- */
+
+typedef struct Swept {
+    const double *centre, *d;
+    double        radius_m;
+} Swept;
+
 /* Whether a ray along d from within a sphere may meet a box, by the sphere round that. */
-static bool swept_may_meet(const Box *box, const double centre[3], double radius_m, const double d[3])
+static bool swept_may_meet(const void *of, const BroadPhase *tree, int n)
 {
-    double m[3], across[3], square = 0;
+    const Swept *q = of;
+    const Box   *box = &tree->node[n];
+    double       m[3], across[3], square = 0;
+    if (!is_box(box)) return false;
     for (int c = 0; c < 3; c++) {
         const double half = 0.5 * (box->high[c] - box->low[c]);
-        m[c] = 0.5 * (box->high[c] + box->low[c]) - centre[c];
+        m[c] = 0.5 * (box->high[c] + box->low[c]) - q->centre[c];
         square += half * half;
     }
-    const double reach_m = (radius_m + sqrt(square)) * (1 + 1e-9) + 1e-6, along = v3_dot(m, d);
-    v3_add_scaled(across, m, -along, d);
+    const double reach_m = (q->radius_m + sqrt(square)) * (1 + 1e-9) + 1e-6, along = v3_dot(m, q->d);
+    v3_add_scaled(across, m, -along, q->d);
+    return along > -reach_m && v3_dot(across, across) < reach_m * reach_m;
+}
+
+static bool swept_meets(const void *of, const BroadPhase *tree, int k)
+{
+    const Swept  *q = of;
+    const double *s = tree->sphere[k];
+    double        m[3], across[3];
+    v3_sub(m, s, q->centre);
+    const double room_m = 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
+    const double reach_m = (q->radius_m + s[3]) * (1 + 1e-9) + room_m;
+    const double along = v3_dot(m, q->d);
+    v3_add_scaled(across, m, -along, q->d);
     return along > -reach_m && v3_dot(across, across) < reach_m * reach_m;
 }
 
 int broad_phase_swept(int *list, int most, const BroadPhase *tree, const double centre[3], double radius_m,
                       const double d[3])
 {
-    int stack[deepest], depth = 0, count = 0;
-    if (tree->count == 0) return 0;
-    stack[depth++] = 1;
-    while (depth > 0) {
-        const int n = stack[--depth];
-        if (!(tree->node[n].low[0] <= tree->node[n].high[0])) continue;
-        if (!swept_may_meet(&tree->node[n], centre, radius_m, d)) continue;
-        if (n < tree->leaves) {
-            stack[depth++] = 2 * n + 1;
-            stack[depth++] = 2 * n;
-            continue;
-        }
-        const int first = (n - tree->leaves) * leaf_items;
-        for (int k = first; k < first + leaf_items && k < tree->count; k++) {
-            const double *s = tree->sphere[k];
-            double        m[3], across[3];
-            v3_sub(m, s, centre);
-            const double room_m = 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
-            const double reach_m = (radius_m + s[3]) * (1 + 1e-9) + room_m;
-            const double along = v3_dot(m, d);
-            v3_add_scaled(across, m, -along, d);
-            if (!(along > -reach_m && v3_dot(across, across) < reach_m * reach_m)) continue;
-            if (count == most) return -1;
-            list[count++] = tree->item[k];
-        }
-    }
-    return count;
+    return walk(list, most, tree, &(Query){swept_may_meet, swept_meets, &(Swept){centre, d, radius_m}});
 }

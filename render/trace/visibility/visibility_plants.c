@@ -74,13 +74,15 @@ static void plants_finish(Hits *hits, const int *list, int count, const void *fo
     double           o[3][hits_capacity], d[3][hits_capacity], range_m[hits_capacity];
     double           n_geo[3][hits_capacity], n_enu[3][hits_capacity];
     float            albedo[hits_capacity], radius_m[hits_capacity], open_up[hits_capacity], open_down[hits_capacity];
+    uint8_t          mark[hits_capacity];
     const ForestRays rays = {{o[0], o[1], o[2]}, {d[0], d[1], d[2]}, range_m};
     ForestSurfaces   at = {.n_geo = {n_geo[0], n_geo[1], n_geo[2]},
                            .n_enu = {n_enu[0], n_enu[1], n_enu[2]},
                            .albedo = albedo,
                            .radius_m = radius_m,
                            .open_up = open_up,
-                           .open_down = open_down};
+                           .open_down = open_down,
+                           .mark = mark};
     for (int k = 0; k < count; k++) {
         const int i = list[k];
         hit[k] = (const ForestHit *)found + i;
@@ -102,7 +104,10 @@ static void plants_finish(Hits *hits, const int *list, int count, const void *fo
         hits->radius_m[i] = radius_m[k];
         hits->open_up[i] = open_up[k];
         hits->open_down[i] = open_down[k];
-        hits->material[i] = materials ? (uint16_t)materials->plant[hit[k]->kind][hit[k]->organ] : 0;
+        const int of = !materials ? 0
+                       : mark[k]  ? materials->mark[mark[k]]
+                                  : materials->plant[hit[k]->kind][hit[k]->organ];
+        hits->material[i] = (uint16_t)of;
         hits->inside[i] = hit[k]->organ != PLANT_LEAF && hit[k]->back;
     }
 }

@@ -55,7 +55,7 @@ Status sweep_scenario_try(const char *scenario, const char *key, const char *val
 /* `KEY=VALUE` of everything that is set over the file; 0-terminated, one after the other. */
 typedef struct Settings {
     int  count;
-    char text[sweep_axes_max + 3][sweep_value_size + 100];
+    char text[sweep_axes_max + 4][sweep_value_size + 100];
 } Settings;
 
 static Status gather(Settings *out, Scenario *scenario, const Config *config, const Sweep *sweep, int variant)
@@ -77,6 +77,8 @@ static Status gather(Settings *out, Scenario *scenario, const Config *config, co
         snprintf(out->text[out->count++], sizeof out->text[0], "ground.relief_m=%.17g", config->terrain.relief_m);
         snprintf(out->text[out->count++], sizeof out->text[0], "ground.spacing_m=%.17g",
                  config->terrain.spacing_m > 0 ? config->terrain.spacing_m : 4);
+        snprintf(out->text[out->count++], sizeof out->text[0], "ground.buildings=%s",
+                 strcmp(config->terrain.buildings, "invented") == 0 ? "true" : "false");
     }
     return status == STATUS_OK ? scenario_check(scenario) : status;
 }
@@ -140,7 +142,7 @@ Status sweep_exercise_need(char *path, size_t size, const char *out, const char 
                            const Sweep *sweep, int variant)
 {
     char folder[sweep_path_size], part[sweep_path_size + 64], places[sweep_path_size + 64], said[sweep_path_size + 64];
-    const char *argv[2 * (sweep_axes_max + 3) + 16];
+    const char *argv[2 * (sweep_axes_max + 4) + 16];
     Scenario    scenario = {0};
     Settings   *set = calloc(1, sizeof *set);
     int         n = 0;

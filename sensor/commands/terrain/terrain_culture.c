@@ -124,7 +124,8 @@ static void print_culture(const Culture *c, const CultureReport *r, const Geodet
     if (c->buildings > 0)
         printf("  %.1f .. %.1f m high; height stated of %d, by levels of %d, by use and size of %d\n", r->low_m,
                r->high_m, r->height_from[0], r->height_from[1], r->height_from[2]);
-    if (r->courtyards > 0) printf("  %d courtyards are built over\n", r->courtyards);
+    if (r->courtyards > 0) printf("  %d courtyards\n", r->courtyards);
+    if (r->built_over > 0) printf("  %d courtyards are built over: small, or entangled\n", r->built_over);
     print_kinds("lines", c->lines, line, CULTURE_LINE_KINDS, culture_line_name);
     print_kinds("points", c->points, point, CULTURE_POINT_KINDS, culture_point_name);
     print_kinds("trees", c->trees, tree, PLANT_STANDING, name_of_plant);

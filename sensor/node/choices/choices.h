@@ -144,6 +144,9 @@ void   choice_woods_free(WoodsChoice *woods);
 
 /* ---- what people built, and clutter -------------------------------------------------------------------- */
 
+/* With terrain.place: where vehicles of the log stand and drive on the ground, within the square. */
+Status choice_driven(DrivenPath **out, int *count, const ChoiceBasis *basis, const WoodsSquare *square,
+                     const Landscape *landscape);
 /* Of the same square: terrain.buildings, terrain.trees, terrain.clutter. basis->evidence is not used.
  * frame_scenery_free after success and failure. */
 Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,

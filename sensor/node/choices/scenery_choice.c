@@ -52,7 +52,11 @@ static void report(Choices *choices, const FrameScenery *s, const Config *config
     else if (s->plan.from == CULTURE_FROM_SEED && landscape_is_synthetic(landscape))
         choice_add(choices, "buildings: %d invented, %d walls, fences and lines, %d other works (terrain.buildings)",
                    n.buildings, n.lines, n.points);
-    else if (s->plan.from == CULTURE_FROM_SEED)
+    if (s->gave_way > 0)
+        choice_add(choices,
+                   "buildings: %d records are not there for what the log's vehicles drive through (terrain.place)",
+                   s->gave_way);
+    if (s->plan.from == CULTURE_FROM_SEED && !landscape_is_synthetic(landscape))
         choice_add(choices, "buildings: none are invented on terrain from files (terrain.buildings)");
     if (s->plan.from == CULTURE_FROM_SEED && *config->terrain.trees)
         choice_add(choices, "trees: terrain.trees is not read with terrain.buildings=invented; name files, or off");
@@ -69,6 +73,8 @@ Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *ba
     Status            status = STATUS_OK;
     *out = (FrameScenery){0};
     if (plan.from == CULTURE_FROM_RECORDS) status = read_files(&out->culture, basis->config, square, landscape);
+    if (status == STATUS_OK && basis->evidence && (plan.from == CULTURE_FROM_SEED || plan.clutter > 0))
+        status = choice_driven(&out->driven, &out->drivens, basis, square, landscape);
     if (status == STATUS_OK) status = frame_scenery_make(out, &plan, landscape);
     if (status != STATUS_OK)
         log_error("scenery: %s; terrain.buildings=off and terrain.clutter=0 show none", status_name(status));

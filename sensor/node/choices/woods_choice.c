@@ -192,10 +192,8 @@ static void add_line(Paths *p, const ClearLine *line)
     }
 }
 
-/* Clears the paths of everything known to have been on the ground or low above it. */
-static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalog *catalog, const GroundEvidence *e)
+static void add_vehicles(Paths *p, const Survey *survey, const Catalog *catalog, const GroundEvidence *e)
 {
-    static const double burst_m = 1; /* it fell between the stems; what it tears down is not cleared before */
     for (int t = 0; t < survey->track_count && !p->no_memory; t++) {
         const Track *track = &survey->track[t];
         const Model *model = catalog_model(catalog, catalog_find(catalog, track->type, NULL, NULL));
@@ -204,6 +202,13 @@ static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalo
         if (p->placed && add_standing(p, track, fixed, model)) continue;
         add_track(p, track, fixed, model);
     }
+}
+
+/* Clears the paths of everything known to have been on the ground or low above it. */
+static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalog *catalog, const GroundEvidence *e)
+{
+    static const double burst_m = 1; /* it fell between the stems; what it tears down is not cleared before */
+    add_vehicles(p, survey, catalog, e);
     for (int i = 0; i < e->said.line_count && !p->no_memory; i++) add_line(p, &e->said.line[i]);
     for (int i = 0; i < survey->shot_count; i++) {
         const Shot *shot = &survey->shot[i];
@@ -213,6 +218,25 @@ static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalo
         add_path(p, p_enu, p_enu, burst_m);
         ++*impacts;
     }
+}
+
+Status choice_driven(DrivenPath **out, int *count, const ChoiceBasis *basis, const WoodsSquare *square,
+                     const Landscape *landscape)
+{
+    const WoodsConfig about = {.centre_m = {square->centre_m[0], square->centre_m[1]},
+                               .half_width_m = square->half_width_m};
+    Paths             paths = {.square = &about, .landscape = landscape, .placed = true};
+    add_vehicles(&paths, basis->survey, basis->catalog, basis->evidence);
+    DrivenPath *driven = calloc((size_t)paths.count + 1, sizeof *driven);
+    for (int n = 0; n < paths.count && driven; n++) {
+        const WoodsPath *p = &paths.path[n];
+        driven[n] = (DrivenPath){{p->a_m[0], p->a_m[1]}, {p->b_m[0], p->b_m[1]}, p->half_m};
+    }
+    const bool made = driven && !paths.no_memory;
+    free(paths.path);
+    if (!made) free(driven);
+    else *out = driven, *count = paths.count;
+    return made ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 /* ---- entities within a trunk ----------------------------------------------------------------------- */
@@ -320,7 +344,7 @@ Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis
                                 .far_half_m = square->own ? 0 : far_half_m,
                                 .store = stored ? config->terrain.store : NULL,
                                 .cache = real ? NULL : basis->cache, /* files may change and keep their names */
-                                .culture = culture->index ? culture : NULL,
+                                .culture = culture->index || culture->trees > 0 ? culture : NULL,
                                 .follows = basis->follows};
     Paths paths = {.square = &out->config, .landscape = landscape, .placed = *config->terrain.place != 0};
     if (!real) add_known(&paths, &impacts, survey, catalog, e);

@@ -352,16 +352,18 @@ static void add_square(Key *key, const WoodsSquare *square)
     add(key, &square->own, sizeof square->own);
 }
 
-static Status need_culture(MadeWorld *m, const MadeOf *of)
+static Status need_culture(MadeWorld *m, const MadeOf *of, const GroundEvidence *evidence)
 {
     char    key_text[sha256_text_size];
     Config *part = &m->part[MADE_CULTURE];
     Key     key = key_of(part, MADE_CULTURE, of->config);
     add_square(&key, of->square);
     add_clutter(&key, part);
-    key.good = key.good && *m->key[MADE_GROUND];
+    /* ground that the log has made keeps what it says of vehicles; placed ground has none of it */
+    const bool placed = *of->config->terrain.place;
+    key.good = key.good && *m->key[MADE_GROUND] && (!placed || choice_evidence_hash(key.digest, evidence));
     if (is_there(key_text, m, MADE_CULTURE, &key)) return STATUS_OK;
-    const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, NULL, m->cache, NULL};
+    const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, placed ? evidence : NULL, m->cache, NULL};
     const Status      status = choice_scenery(&m->scenery, &m->said[MADE_CULTURE], &basis, of->square, &m->landscape);
     if (status == STATUS_OK && m->scenery.culture.index) culture_lay(&m->landscape, &m->scenery.culture);
     return done(m, MADE_CULTURE, key_text, status);
@@ -378,7 +380,7 @@ static Status need_woods(MadeWorld *m, const MadeOf *of, const GroundEvidence *e
     char follows[4 * sha256_text_size]; /* settings, tables, frame and evidence by content; paths of vehicles are in
                                            WoodsConfig */
     snprintf(follows, sizeof follows, "%s%s%s%s", m->key[MADE_CATALOG], m->key[MADE_GROUND],
-             m->scenery.culture.index ? m->key[MADE_CULTURE] : "", key_text);
+             m->scenery.culture.index || m->scenery.culture.trees > 0 ? m->key[MADE_CULTURE] : "", key_text);
     const bool        known = *m->key[MADE_CATALOG] && *m->key[MADE_CULTURE] && *key_text;
     const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, evidence, m->cache, known ? follows : NULL};
     return done(
@@ -444,7 +446,7 @@ Status made_world(MadeWorld *m, Choices *choices, const MadeOf *of)
         say(choices, &m->said[MADE_GROUND]);
         choice_report_submerged(choices, made_basis_survey(m), evidence, of->plan);
     }
-    if (status == STATUS_OK) status = need_culture(m, of);
+    if (status == STATUS_OK) status = need_culture(m, of, evidence);
     if (status == STATUS_OK) status = need_woods(m, of, evidence);
     choice_evidence_free(evidence);
     if (status != STATUS_OK) return status;

@@ -210,6 +210,7 @@ static const Field woods_rows[] = {
     {"plants", "", "", "", "trees, bushes and hedges", OF_WOODS(woods.count)},
     {"kinds", "", "", "", "of these, by kind", FIELD_OBJECT(kind_rows)},
     {"from", "", "", "", "by what says where they stand", FIELD_OBJECT(origin_rows)},
+    {"marked", "", "", "", "trees of terrain.trees with a painted ring", OF_WOODS(woods.marked)},
     {"left_out", "", "", "", "plants beyond terrain.woods_trees", OF_WOODS(woods.left_out)},
     {"reach_m", "m", "from what is on the ground in the middle of the world", "", "within it none is left out",
      OF_WOODS(woods.reach_m)},

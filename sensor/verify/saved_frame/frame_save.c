@@ -37,9 +37,12 @@ static Status write_settings(char **text, const Config *config)
 static Status gather_scenery(SavedFrame *file, const FrameScenery *scenery)
 {
     SavedScenery *to = &file->scenery;
-    file->built = scenery && (scenery->culture.index || scenery->scenery.objects > 0);
+    file->built = scenery && (scenery->culture.index || scenery->culture.trees > 0 || scenery->scenery.objects > 0);
     if (!file->built) return STATUS_OK;
-    *to = (SavedScenery){.plan = scenery->plan, .objects = scenery->scenery.objects};
+    *to = (SavedScenery){.plan = scenery->plan,
+                         .drivens = scenery->drivens,
+                         .driven = scenery->driven,
+                         .objects = scenery->scenery.objects};
     if (to->plan.from == CULTURE_FROM_RECORDS) to->culture = scenery->culture;
     return saved_scenery_sha256(to->sha256, &scenery->scenery);
 }

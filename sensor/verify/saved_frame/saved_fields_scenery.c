@@ -70,7 +70,7 @@ static void tree_fields(Fields *f, void *record)
     field_real(f, "place of a tree", &t->y_m, -culture_farthest_m, culture_farthest_m);
     field_floats(f, "height of a tree", &t->height_m, 1, 0, 200);
     byte_field(f, "kind of a tree", &t->kind, UINT8_MAX);
-    field_bool(f, "mark of a tree", &t->marked);
+    byte_field(f, "mark of a tree", &t->mark, PLANT_MARKS - 1);
 }
 
 static void record_lists(Fields *f, Culture *c)
@@ -86,10 +86,18 @@ static void record_lists(Fields *f, Culture *c)
     if (fault) f->fault = fault;
 }
 
-/* Last, and only of a table that is not countryside. */
-static void table_field(Fields *f, char *named, size_t size)
+static void driven_fields(Fields *f, void *record)
 {
-    const bool other = f->from ? f->from->at < f->from->end : *named && strcmp(named, "countryside") != 0;
+    DrivenPath *p = record;
+    field_reals(f, "path of a vehicle", p->a_m, 2, 2 * culture_farthest_m);
+    field_reals(f, "path of a vehicle", p->b_m, 2, 2 * culture_farthest_m);
+    field_real(f, "width of a path", &p->half_m, 0, 1000);
+}
+
+/* Only of a table that is not countryside, or where paths follow. */
+static void table_field(Fields *f, char *named, size_t size, bool more)
+{
+    const bool other = f->from ? f->from->at < f->from->end : more || (*named && strcmp(named, "countryside") != 0);
     if (other) field_chars(f, "table of clutter", named, size);
     else if (f->from) *named = 0;
 }
@@ -111,5 +119,8 @@ void saved_fields_scenery(Fields *f, SavedFrame *file)
     field_int(f, "objects of scenery", &file->scenery.objects, 0, INT32_MAX - 1);
     field_chars(f, "scenery sha256", file->scenery.sha256, sizeof file->scenery.sha256);
     if (plan->from == CULTURE_FROM_RECORDS) record_lists(f, &file->scenery.culture);
-    table_field(f, plan->clutter_table, sizeof plan->clutter_table);
+    SavedScenery *s = &file->scenery;
+    table_field(f, plan->clutter_table, sizeof plan->clutter_table, s->drivens > 0);
+    if (f->from ? f->from->at < f->from->end : s->drivens > 0) /* last */
+        field_list(f, &s->drivens, (void **)&s->driven, sizeof *s->driven, landscape_parts_rows, driven_fields);
 }

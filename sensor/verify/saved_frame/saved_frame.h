@@ -51,6 +51,8 @@ typedef struct SavedRadar {
 typedef struct SavedScenery {
     SceneryPlan plan;
     Culture     culture; /* CULTURE_FROM_RECORDS: as it came from files, not indexed */
+    int         drivens; /* FrameScenery.driven */
+    DrivenPath *driven;
     int         objects; /* of the scenery made of it, and its hash, by which a difference is noticed: */
     char        sha256[sha256_text_size];
 } SavedScenery;

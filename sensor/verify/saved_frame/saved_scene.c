@@ -77,7 +77,7 @@ Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, co
 {
     WoodsConfig how = file->woods;
     if (!file->planted) return STATUS_OK;
-    how.culture = culture->index ? culture : NULL;
+    how.culture = culture->index || culture->trees > 0 ? culture : NULL;
     how.store = file->ground.store && *file->ground.store ? file->ground.store : NULL;
     how.cache = how.store ? NULL : world->cache, how.follows = follows;
     const Status status = woods_create(woods, world->landscape, &how, pool);

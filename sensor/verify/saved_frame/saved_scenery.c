@@ -90,7 +90,9 @@ Status saved_scenery_make(FrameScenery *out, Landscape *landscape, const SavedFr
     *out = (FrameScenery){0};
     if (!file->built) return STATUS_OK;
     if (was->plan.from == CULTURE_FROM_RECORDS) status = copy_culture(&out->culture, &was->culture);
-    if (status == STATUS_OK) status = frame_scenery_make(out, &was->plan, landscape);
+    if (status == STATUS_OK && !copy_records(&out->driven, was->driven, was->drivens, sizeof *out->driven))
+        status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) out->drivens = was->drivens, status = frame_scenery_make(out, &was->plan, landscape);
     if (status == STATUS_OK) status = saved_scenery_sha256(sha256, &out->scenery);
     if (status != STATUS_OK) {
         log_error("frame: its buildings and clutter cannot be made again: %s", status_name(status));

@@ -271,34 +271,67 @@ static size_t put_tags(char *to, int32_t *tags, OGRFeatureH feature)
     return used;
 }
 
-/* Writes a part of corners first .. first + count - 1 of a curve; none when it does not fit. */
-static void put_part(Batch *b, WireShape shape, OGRGeometryH curve, int first, int count, int holes)
+/* Places of a curve, rad. */
+static void put_places(double *place, OGRGeometryH curve, int first, int count)
 {
-    const int   number = b->part++;
-    WireFeature f = {.shape = (int32_t)shape,
-                     .corners = count <= wire_most_corners ? count : 0,
-                     .holes = holes,
-                     .file = at.of_file,
-                     .part = number,
-                     .number = at.end.features};
+    static double x[wire_most_corners], y[wire_most_corners];
+    for (int k = 0; k < count; k++) {
+        double z;
+        OGR_G_GetPoint(curve, first + k, &x[k], &y[k], &z);
+    }
+    to_degrees(at.earth_from_crs, count, x, y);
+    for (int k = 0; k < count; k++) place[2 * k] = x[k] * rad_per_deg, place[2 * k + 1] = y[k] * rad_per_deg;
+}
+
+/* Inner rings that are sent: as many as there is room for. */
+typedef struct Inner {
+    int          rings, corners;
+    int32_t      count[wire_most_rings + 1];
+    OGRGeometryH ring[wire_most_rings];
+} Inner;
+
+static void find_inner(Inner *out, OGRGeometryH polygon)
+{
+    out->rings = out->corners = 0;
+    for (int k = 1; k < OGR_G_GetGeometryCount(polygon) && out->rings < wire_most_rings; k++) {
+        OGRGeometryH ring = OGR_G_GetGeometryRef(polygon, k);
+        const int    count = ring ? OGR_G_GetPointCount(ring) - 1 : 0; /* the last repeats the first */
+        if (count < 3 || count > wire_most_corners - out->corners) continue;
+        out->ring[out->rings] = ring, out->count[out->rings++] = count;
+        out->corners += count;
+    }
+    out->count[out->rings] = 0;
+}
+
+/* Writes a part of corners first .. first + count - 1 of a curve; none when it does not fit. polygon: whose outer ring
+ * the curve is; NULL: of none. */
+static void put_part(Batch *b, WireShape shape, OGRGeometryH curve, int first, int count, OGRGeometryH polygon)
+{
+    static Inner inner;
+    const int    number = b->part++;
+    WireFeature  f = {.shape = (int32_t)shape,
+                      .corners = count <= wire_most_corners ? count : 0,
+                      .holes = polygon ? OGR_G_GetGeometryCount(polygon) - 1 : 0,
+                      .file = at.of_file,
+                      .part = number,
+                      .number = at.end.features};
     if (b->full || number < at.part) return;
     b->found = true;
-    const size_t places = 2 * sizeof(double) * (size_t)f.corners;
+    inner.rings = inner.corners = 0;
+    if (polygon && f.corners > 0) find_inner(&inner, polygon);
+    f.rings = inner.rings, f.ring_corners = inner.corners;
+    const size_t sizes = ((size_t)inner.rings * sizeof *inner.count + 7) / 8 * 8;
+    const size_t places = 2 * sizeof(double) * (size_t)(f.corners + f.ring_corners) + sizes;
     if (wire_data_octets - b->used < sizeof f + places + wire_most_texts + 8) {
         b->full = true;
         return;
     }
     uint8_t *to = b->data + b->used;
     double  *place = (double *)(void *)(to + sizeof f);
-    if (f.corners > 0) {
-        static double x[wire_most_corners], y[wire_most_corners];
-        for (int k = 0; k < f.corners; k++) {
-            double z;
-            OGR_G_GetPoint(curve, first + k, &x[k], &y[k], &z);
-        }
-        to_degrees(at.earth_from_crs, f.corners, x, y);
-        for (int k = 0; k < f.corners; k++) place[2 * k] = x[k] * rad_per_deg, place[2 * k + 1] = y[k] * rad_per_deg;
-    }
+    if (f.corners > 0) put_places(place, curve, first, f.corners);
+    place += 2 * f.corners;
+    for (int k = 0; k < inner.rings; place += 2 * inner.count[k++]) put_places(place, inner.ring[k], 0, inner.count[k]);
+    if (sizes) memcpy(place, inner.count, sizes);
     const size_t texts = put_tags((char *)to + sizeof f + places, &f.tags, at.feature);
     f.texts = (int32_t)texts;
     f.octets = (uint32_t)(sizeof f + places + (texts + 7) / 8 * 8);
@@ -313,7 +346,8 @@ static void put_line(Batch *b, OGRGeometryH line)
 {
     const int count = OGR_G_GetPointCount(line);
     for (int first = 0; first + 1 < count && !b->full; first += wire_most_corners - 1)
-        put_part(b, WIRE_LINE, line, first, count - first < wire_most_corners ? count - first : wire_most_corners, 0);
+        put_part(b, WIRE_LINE, line, first, count - first < wire_most_corners ? count - first : wire_most_corners,
+                 NULL);
 }
 
 static void put_geometry(Batch *b, OGRGeometryH g, int depth)
@@ -321,7 +355,7 @@ static void put_geometry(Batch *b, OGRGeometryH g, int depth)
     if (!g || depth > most_depth || b->full) return;
     switch (OGR_GT_Flatten(OGR_G_GetGeometryType(g))) {
     case wkbPoint:
-        if (OGR_G_GetPointCount(g) == 1) put_part(b, WIRE_POINT, g, 0, 1, 0);
+        if (OGR_G_GetPointCount(g) == 1) put_part(b, WIRE_POINT, g, 0, 1, NULL);
         return;
     case wkbLineString:
         put_line(b, g);
@@ -331,7 +365,7 @@ static void put_geometry(Batch *b, OGRGeometryH g, int depth)
         const int    rings = OGR_G_GetGeometryCount(g);
         OGRGeometryH outer = rings > 0 ? OGR_G_GetGeometryRef(g, 0) : NULL;
         const int    corners = outer ? OGR_G_GetPointCount(outer) : 0;
-        if (corners > 3) put_part(b, WIRE_POLYGON, outer, 0, corners - 1, rings - 1); /* the last repeats the first */
+        if (corners > 3) put_part(b, WIRE_POLYGON, outer, 0, corners - 1, g); /* the last repeats the first */
         return;
     }
     case wkbMultiPoint:
