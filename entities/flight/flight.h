@@ -70,7 +70,7 @@ typedef enum FlightVerdict {
     FLIGHT_GUIDED,
     FLIGHT_NOT_YET,       /* guide_after_s has not passed */
     FLIGHT_NO_SIGHT,      /* NULL */
-    FLIGHT_BAD_SIGHT,     /* not finite, no unit vector, or without a rate that the law needs */
+    FLIGHT_BAD_SIGHT,     /* not finite, beyond what flies, no unit vector, or without a rate that the law needs */
     FLIGHT_AHEAD,         /* measured later than now */
     FLIGHT_OLD,           /* older than memory_s */
     FLIGHT_BEYOND_GIMBAL, /* further off the body's axis than the gimbal turns */

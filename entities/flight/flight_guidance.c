@@ -170,12 +170,20 @@ void flight_law(double out_ecef_mps2[3], const Missile *missile, const FlightCom
 
 /* ---- whether a measurement guides ---------------------------------------------------------------- */
 
+/* Beyond these no number is a measurement: squares of them stay finite. */
+static const double most_m = 1e8, most_mps = 1e5, most_mps2 = 1e5, most_rps = 1e4;
+
+static bool is_within(const double v[3], double most) { return v3_is_finite(v) && v3_length(v) <= most; }
+
 static bool sight_is_good(const FlightSight *s, const Missile *missile)
 {
-    if (!v3_is_finite(s->los_ecef) || !v3_is_finite(s->eye_ecef) || !v3_is_finite(s->eye_v_ecef_mps)) return false;
-    if (!(fabs(v3_length(s->los_ecef) - 1) < 1e-6)) return false;
-    if (isfinite(s->range_m) && !(s->range_m > 0)) return false;
-    return missile->guidance == MISSILE_PURSUIT || v3_is_finite(s->los_rate_ecef_rps);
+    if (!is_within(s->eye_ecef, most_m) || !is_within(s->eye_v_ecef_mps, most_mps)) return false;
+    if (!v3_is_finite(s->los_ecef) || !(fabs(v3_length(s->los_ecef) - 1) < 1e-6)) return false;
+    if (!isnan(s->range_m) && !(s->range_m > 0 && s->range_m <= most_m)) return false;
+    if (!isnan(s->closing_mps) && !(fabs(s->closing_mps) <= most_mps)) return false;
+    if (v3_is_finite(s->target_a_ecef_mps2) && !is_within(s->target_a_ecef_mps2, most_mps2)) return false;
+    return is_within(s->los_rate_ecef_rps, most_rps) ||
+           (missile->guidance == MISSILE_PURSUIT && !v3_is_finite(s->los_rate_ecef_rps));
 }
 
 static double angle_between(const double a[3], const double b[3])
