@@ -10,25 +10,44 @@ const char *flight_end_name(FlightEnd end)
     return name[end];
 }
 
-static void target_at(double p[3], double v[3], const Engagement *e, double t_s)
+/* An engagement as it is flown. */
+typedef struct Course {
+    const Engagement  *e;
+    const Missile     *missile;
+    const FlightWorld *world;
+    EngagementScene    scene;
+} Course;
+
+static void target_at(double p[3], double v[3], double a[3], const Course *c, double t_s)
 {
+    const Engagement *e = c->e;
+    if (c->scene.target_at) {
+        c->scene.target_at(p, v, a, c->scene.user, t_s);
+        return;
+    }
+    const double age_s = t_s - (double)e->tick * c->world->step_s;
     for (int k = 0; k < 3; k++) {
-        v[k] = e->target_v_ecef_mps[k] + t_s * e->target_a_ecef_mps2[k];
-        p[k] = e->target_ecef[k] + t_s * (e->target_v_ecef_mps[k] + 0.5 * t_s * e->target_a_ecef_mps2[k]);
+        a[k] = e->target_a_ecef_mps2[k];
+        v[k] = e->target_v_ecef_mps[k] + age_s * a[k];
+        p[k] = e->target_ecef[k] + age_s * (e->target_v_ecef_mps[k] + 0.5 * age_s * a[k]);
     }
 }
 
 /* Measures: from the missile, or from the launcher. */
-static bool look(FlightSight *out, const Engagement *e, const Missile *missile, const FlightState *state, double t_s)
+static bool look(FlightSight *out, const Course *c, const FlightState *state, double t_s)
 {
-    const bool   launcher = missile->guidance == MISSILE_COMMAND;
-    const double still[3] = {0};
-    double       p[3], v[3];
-    target_at(p, v, e, t_s);
-    if (!flight_sight_true(out, t_s, launcher ? e->p_ecef : state->p_ecef, launcher ? still : state->v_ecef_mps, p, v,
-                           e->target_a_ecef_mps2))
-        return false;
-    if (!e->ranged) out->range_m = out->closing_mps = NAN;
+    double eye[3], eye_mps[3] = {0}, p[3], v[3], a[3];
+    target_at(p, v, a, c, t_s);
+    v3_add(p, p, c->e->aim_ecef);
+    memcpy(eye, c->e->p_ecef, sizeof eye);
+    if (c->missile->guidance != MISSILE_COMMAND) {
+        memcpy(eye, state->p_ecef, sizeof eye);
+        memcpy(eye_mps, state->v_ecef_mps, sizeof eye_mps);
+    } else if (c->scene.launcher_at) {
+        c->scene.launcher_at(eye, eye_mps, c->scene.user, t_s);
+    }
+    if (!flight_sight_true(out, t_s, eye, eye_mps, p, v, a)) return false;
+    if (!c->e->ranged) out->range_m = out->closing_mps = NAN;
     return true;
 }
 
@@ -79,54 +98,78 @@ static void take_extremes(EngagementResult *r, const FlightState *s)
     if (s->lateral_mps2 >= s->most_lateral_mps2 * (1 - 1e-12)) r->at_limit++;
 }
 
+/* Whether the ground, or the plane, was met in this step: when and where. */
+static bool meets_ground(double *after_s, double p_ecef[3], const Course *c, const MissLeg *leg)
+{
+    double on[3], normal[3];
+    if (c->scene.ground_at) c->scene.ground_at(on, normal, c->scene.user, leg->p1_ecef);
+    else if (!c->e->ground) return false;
+    else memcpy(on, c->e->on_ecef, sizeof on), memcpy(normal, c->e->normal_ecef, sizeof normal);
+    return plane_crossing(after_s, p_ecef, c->world->step_s, leg, on, normal);
+}
+
+/* Looks when it is time to, commands, and takes a step. */
+static bool advance(EngagementResult *r, Line *line, double *next_look_s, const Course *c)
+{
+    FlightState  *s = &r->state;
+    FlightCommand command;
+    FlightSight   sight;
+    const double  t_s = flight_time_s(s, c->world);
+    if (c->e->target && t_s >= *next_look_s - 1e-9) {
+        if (look(&sight, c, s, t_s)) put_in_line(line, &sight);
+        *next_look_s += c->e->sight_every_s > 0 ? c->e->sight_every_s : c->world->step_s;
+    }
+    flight_command(&command, c->missile, c->world, s, newest(line, t_s, c->e->sight_late_s));
+    r->verdict = command.verdict;
+    if (command.verdict == FLIGHT_GUIDED) r->guided++;
+    else r->coasted++;
+    return flight_step(s, c->missile, c->world, &command);
+}
+
 void engagement_fly(EngagementResult *out, const Engagement *e, const Missile *missile, const FlightWorld *world)
 {
+    const Course     c = {e, missile, world, e->scene ? *e->scene : (EngagementScene){0}};
     EngagementResult r = {.miss = miss_begin()};
     FlightState     *s = &r.state;
     Line             line = {.first = 0};
+    MissLeg          leg, target;
     FlightSight      sight;
+    double           none[3], next_look_s = (double)e->tick * world->step_s;
     const double     h = world->step_s;
-    const int64_t    last = (int64_t)round(fmin(e->until_s, missile->life_s) / h);
-    double           next_look_s = 0;
-    flight_launch(s, missile, world, 0, e->p_ecef, e->v_ecef_mps);
-    if (e->target && look(&sight, e, missile, s, 0)) flight_lock(s, missile, sight.los_ecef);
+    const int64_t    last = e->tick + (int64_t)round(fmin(e->until_s, missile->life_s) / h);
+    flight_launch(s, missile, world, e->tick, e->p_ecef, e->v_ecef_mps);
+    if (e->target) {
+        if (look(&sight, &c, s, next_look_s)) flight_lock(s, missile, sight.los_ecef);
+        target_at(target.p1_ecef, target.v1_ecef_mps, none, &c, next_look_s);
+    }
     take_extremes(&r, s);
+    if (c.scene.seen) c.scene.seen(c.scene.user, s);
     r.end = e->until_s <= missile->life_s ? FLIGHT_END_UNTIL : FLIGHT_END_LIFE;
-    while (s->tick < last) {
+    while (s->tick < last && (r.end == FLIGHT_END_UNTIL || r.end == FLIGHT_END_LIFE)) {
         const FlightState before = *s;
-        FlightCommand     command;
-        MissLeg           leg, target;
         const double      t_s = flight_time_s(s, world);
-        if (e->target && t_s >= next_look_s - 1e-9) {
-            if (look(&sight, e, missile, s, t_s)) put_in_line(&line, &sight);
-            next_look_s += e->sight_every_s > 0 ? e->sight_every_s : h;
-        }
-        flight_command(&command, missile, world, s, newest(&line, t_s, e->sight_late_s));
-        r.verdict = command.verdict;
-        if (command.verdict == FLIGHT_GUIDED) r.guided++;
-        else r.coasted++;
-        if (!flight_step(s, missile, world, &command)) {
+        double            after_s;
+        if (!advance(&r, &line, &next_look_s, &c)) {
             r.end = FLIGHT_END_LOST;
             break;
         }
         take_extremes(&r, s);
+        if (c.scene.seen) c.scene.seen(c.scene.user, s);
         leg_of(&leg, &before, s);
-        double after_s;
-        if (e->ground && plane_crossing(&after_s, r.p_ecef, h, &leg, e->on_ecef, e->normal_ecef)) {
+        if (meets_ground(&after_s, r.p_ecef, &c, &leg)) {
             r.end = FLIGHT_END_GROUND;
             r.t_s = t_s + after_s;
         }
-        if (e->target) {
-            target_at(target.p0_ecef, target.v0_ecef_mps, e, t_s);
-            target_at(target.p1_ecef, target.v1_ecef_mps, e, flight_time_s(s, world));
-            miss_step(&r.miss, t_s, h, &leg, &target, missile->fuze_m);
-            double away[3];
-            v3_sub(away, s->p_ecef, target.p1_ecef);
-            const double range_m = v3_length(away);
-            if (r.miss.fuzed && range_m > r.miss.least_m) r.end = FLIGHT_END_FUZE;
-            else if (range_m > r.miss.least_m + passed_m) r.end = FLIGHT_END_PASSED;
-        }
-        if (r.end != FLIGHT_END_UNTIL && r.end != FLIGHT_END_LIFE) break;
+        if (!e->target) continue;
+        memcpy(target.p0_ecef, target.p1_ecef, sizeof target.p0_ecef);
+        memcpy(target.v0_ecef_mps, target.v1_ecef_mps, sizeof target.v0_ecef_mps);
+        target_at(target.p1_ecef, target.v1_ecef_mps, none, &c, flight_time_s(s, world));
+        miss_step(&r.miss, t_s, h, &leg, &target, missile->fuze_m);
+        double away[3];
+        v3_sub(away, s->p_ecef, target.p1_ecef);
+        const double range_m = v3_length(away);
+        if (r.miss.fuzed && range_m > r.miss.least_m) r.end = FLIGHT_END_FUZE;
+        else if (r.end != FLIGHT_END_GROUND && range_m > r.miss.least_m + passed_m) r.end = FLIGHT_END_PASSED;
     }
     if (r.end != FLIGHT_END_GROUND) {
         r.t_s = flight_time_s(s, world);
