@@ -43,6 +43,7 @@ typedef struct FlightState {
     double  lag_mps2[3];         /* lateral acceleration of the autopilot, ECEF, across the velocity through the air */
     double  lag_rate_mps3[3];    /* its rate, second order alone */
     double  r_ecef_from_body[9]; /* x forward, y right, z down; the wings are level */
+    double  attack_ecef[3];      /* across the velocity through the air: sine of the angle of attack, to its side */
     double  gaze_ecef[3];        /* unit: where the seeker points */
     bool    terminal;            /* loft: the dive has begun */
     /* of the last grid point, for people and tests */

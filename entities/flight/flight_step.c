@@ -157,13 +157,19 @@ static void slope(double out[parts], const double y[parts], double t_s, const Le
                        : 0;
 }
 
-/* Attitude at a grid point: the body's axis is turned from the velocity through the air by the angle of attack. */
-static void set_attitude(FlightState *state, const FlightInstant *at, const Forces *f)
+/* Attitude at a grid point: the body's axis is turned from the velocity through the air by the angle of attack, which
+ * it follows in half the autopilot's time: else a motor that lights would turn it in no time. share: of that way since
+ * the grid point before. */
+static void set_attitude(FlightState *state, const FlightInstant *at, const Forces *f, double share)
 {
-    double       x[3], y[3], z[3], down[3];
+    double       x[3], y[3], z[3], down[3], wanted[3];
     const double lateral_mps2 = v3_length(f->lateral_mps2);
-    v3_scale(x, sqrt(fmax(0, 1 - f->sine * f->sine)), at->ahead_ecef);
-    if (lateral_mps2 > 0) v3_add_scaled(x, x, f->sine / lateral_mps2, f->lateral_mps2);
+    v3_scale(wanted, lateral_mps2 > 0 ? f->sine / lateral_mps2 : 0, f->lateral_mps2);
+    v3_across(state->attack_ecef, state->attack_ecef, at->ahead_ecef);
+    for (int k = 0; k < 3; k++) state->attack_ecef[k] += share * (wanted[k] - state->attack_ecef[k]);
+    const double sine = fmin(v3_length(state->attack_ecef), 1);
+    v3_scale(x, sqrt(1 - sine * sine), at->ahead_ecef);
+    v3_add(x, x, state->attack_ecef);
     if (!v3_normalize(x, x)) memcpy(x, at->ahead_ecef, sizeof x);
     flight_up(down, at->p_ecef);
     v3_scale(down, -1, down);
@@ -183,7 +189,7 @@ static void set_attitude(FlightState *state, const FlightInstant *at, const Forc
         state->r_ecef_from_body[3 * k + 1] = y[k];
         state->r_ecef_from_body[3 * k + 2] = z[k];
     }
-    state->attack_rad = asin(fmin(f->sine, 1));
+    state->attack_rad = asin(sine);
 }
 
 /* Turns a unit vector towards another by an angle at most. */
@@ -223,7 +229,7 @@ void flight_lock(FlightState *state, const Missile *missile, const double los_ec
 }
 
 /* What a grid point shows of the state's position, velocity and autopilot. */
-static void note(FlightState *state, const Missile *missile, const FlightWorld *world)
+static void note(FlightState *state, const Missile *missile, const FlightWorld *world, double share)
 {
     FlightInstant at = {.t_s = flight_time_s(state, world)};
     Forces        f;
@@ -237,7 +243,7 @@ static void note(FlightState *state, const Missile *missile, const FlightWorld *
     state->mach = f.mach;
     state->lateral_mps2 = v3_length(f.lateral_mps2);
     state->most_lateral_mps2 = f.most_mps2;
-    set_attitude(state, &at, &f);
+    set_attitude(state, &at, &f, share);
 }
 
 void flight_launch(FlightState *out, const Missile *missile, const FlightWorld *world, int64_t tick,
@@ -247,7 +253,7 @@ void flight_launch(FlightState *out, const Missile *missile, const FlightWorld *
     m3_identity(s.r_ecef_from_body);
     memcpy(s.p_ecef, p_ecef, sizeof s.p_ecef);
     memcpy(s.v_ecef_mps, v_ecef_mps, sizeof s.v_ecef_mps);
-    note(&s, missile, world);
+    note(&s, missile, world, 1);
     for (int k = 0; k < 3; k++) s.gaze_ecef[k] = s.r_ecef_from_body[3 * k];
     *out = s;
 }
@@ -285,7 +291,7 @@ bool flight_step(FlightState *state, const Missile *missile, const FlightWorld *
     memcpy(state->lag_mps2, y + 6, 3 * sizeof *y);
     memcpy(state->lag_rate_mps3, y + 9, 3 * sizeof *y);
     state->terminal = command->terminal;
-    note(state, missile, world);
+    note(state, missile, world, -expm1(-2 * h / missile->lag_s));
     if (command->sees) turn_towards(state->gaze_ecef, command->los_ecef, missile->gimbal_rate_rps * h);
     hold_gimbal(state, missile);
     return true;

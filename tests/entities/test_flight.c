@@ -256,7 +256,7 @@ static void lift_is_limited_by_the_air(void **state)
     to_ecef(sight.los_ecef, &frame, 1, 0, 0);
     flight_launch(&s, &m, &world, 0, frame.origin_ecef, v);
     standard_atmosphere(&air, 12000);
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 200; i++) {
         FlightCommand c;
         flight_command(&c, &m, &world, &s, &sight);
         CHECK(flight_step(&s, &m, &world, &c));
