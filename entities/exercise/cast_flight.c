@@ -143,7 +143,7 @@ Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double a
     double                v[3], a[3], target[3], line[3];
     *f = (CastFlight){.round = number};
     ecef_from_enu(scene.at_ecef, frame, at_enu);
-    m.fuze_m = fmax(m.fuze_m, shot->hit_m);
+    m.fuze_m = round->target < 0 ? 0 : fmax(m.fuze_m, shot->hit_m);
     Engagement e = {.tick = llround(round->fire_s / world.step_s),
                     .scene = &through,
                     .target = true,

@@ -193,12 +193,12 @@ static Status fly(Cast *cast, CastRound *round)
         return status;
     }
     launch_place(round, cast);
-    impact_place(at_enu, cast, round, round->fire_s); /* of a place; a target is followed */
+    impact_place(at_enu, cast, round, round->fire_s); /* of a place, whose ground it meets; a target is followed */
+    at_enu[2] = exercise_ground_at(NULL, &cast->ground, at_enu[0], at_enu[1]);
     status = cast_fly(cast, round, &missile, at_enu);
     if (status != STATUS_OK) return status;
-    if (round->result == dis_result_entity_impact && round->target >= 0) damage(cast, round);
+    if (round->result == dis_result_entity_impact) damage(cast, round);
     else round->target = -1;
-    if (round->result == dis_result_entity_impact && round->target < 0) round->result = dis_result_ground_impact;
     return STATUS_OK;
 }
 
