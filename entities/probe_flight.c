@@ -97,7 +97,7 @@ const char *flight_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
 
     FlightWorld world = flight_world();
     world.step_s = or_else(&in[at_step], 0.001);
-    if (!inside(world.step_s, 1e-5, 0.01)) return "step_s must be 1e-5 .. 0.01";
+    if (!inside(world.step_s, 0.0005, 0.01)) return "step_s must be 0.0005 .. 0.01";
     const double whole = or_else(&in[at_world], 1), air = or_else(&in[at_air], 1);
     if (!inside(whole, 0, 2) || whole != floor(whole))
         return "earth must be 1, 0 (no gravity, no turning) or 2 (no turning)";

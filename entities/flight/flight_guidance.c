@@ -193,6 +193,13 @@ static double angle_between(const double a[3], const double b[3])
     return atan2(v3_length(cross), v3_dot(a, b)); /* exact near 0, where acos is not */
 }
 
+/* Phases begin on whole milliseconds of exercise time, whatever the step: half the step then begins them no earlier. */
+static bool decides(double t_s, double step_s)
+{
+    static const double grid_s = 0.001, rounding = 1e-6;
+    return floor(t_s / grid_s + rounding) != floor((t_s - step_s) / grid_s + rounding);
+}
+
 static FlightVerdict judge(FlightCommand *c, const Missile *missile, const FlightState *state, const FlightInstant *at,
                            const FlightWorld *world, const FlightSight *sight)
 {
@@ -211,7 +218,7 @@ static FlightVerdict judge(FlightCommand *c, const Missile *missile, const Fligh
     memcpy(c->los_ecef, track.los_ecef, sizeof c->los_ecef);
     if (seeker && !(angle_between(forward, track.los_ecef) <= missile->gimbal_rad)) return FLIGHT_BEYOND_GIMBAL;
     if (seeker && track.closing_mps <= 0 && v3_dot(track.los_ecef, at->ahead_ecef) <= 0) return FLIGHT_PASSED;
-    if (missile->guidance == MISSILE_LOFT && !c->terminal) {
+    if (missile->guidance == MISSILE_LOFT && !c->terminal && decides(at->t_s, world->step_s)) {
         double up[3];
         flight_up(up, at->p_ecef);
         c->terminal = -v3_dot(track.los_ecef, up) >= sin(missile->dive_rad);

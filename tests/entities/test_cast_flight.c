@@ -62,7 +62,8 @@ static void each_ends_where_it_should(void **state)
             assert_int_equal(round->target, -1);
             CHECK_NEAR(round->impact_enu[2],
                        exercise_ground_at(NULL, &cast->ground, round->impact_enu[0], round->impact_enu[1]), 1e-3);
-            print_message("ground %g m from the place, passing it by %g m\n", hypot(round->impact_enu[0] - 100, round->impact_enu[1] - 500), f->miss_m);
+            print_message("ground %g m from the place, passing it by %g m\n",
+                          hypot(round->impact_enu[0] - 100, round->impact_enu[1] - 500), f->miss_m);
             CHECK(hypot(round->impact_enu[0] - 100, round->impact_enu[1] - 500) < 1);
             continue;
         }
