@@ -149,6 +149,10 @@ Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double a
                     .target = true,
                     .sight_every_s = shot->sight_every_s,
                     .sight_late_s = shot->sight_late_s,
+                    .filter_memory = shot->sight_memory,
+                    .noise_rad = 1e-3 * shot->sight_noise_mrad,
+                    .noise_seed = (uint64_t)cast->scenario->seed,
+                    .noise_stream = 0x10000u + (uint32_t)number,
                     .ranged = true,
                     .until_s = INFINITY};
     round->fire_s = (double)e.tick * world.step_s;

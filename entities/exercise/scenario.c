@@ -275,6 +275,16 @@ static bool shot_fits(const Scenario *s, const int *ids, const ScenarioShot *sho
                   shot->line);
         return false;
     }
+    if (shot->sight_noise_mrad > 0 && !(shot->sight_memory > 0)) {
+        log_error("scenario: %s:%d: shots: sight_noise_mrad: true rates have no noise; give sight_memory too, as 0.7",
+                  s->path, shot->line);
+        return false;
+    }
+    if (shot->sight_late_s > 200 * fmax(shot->sight_every_s, 0.001)) {
+        log_error("scenario: %s:%d: shots: sight_late_s: %g s is more than 200 measurements, at sight_every_s of %g",
+                  s->path, shot->line, shot->sight_late_s, shot->sight_every_s);
+        return false;
+    }
     if (shot->launch_m.count != 0 && shot->launch_m.count != 3) {
         log_error("scenario: %s:%d: shots: launch_m: %d numbers; give [forward, right, down]", s->path, shot->line,
                   shot->launch_m.count);

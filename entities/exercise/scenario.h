@@ -107,6 +107,11 @@ enum {
     ROW(DOUBLE, , sight_error_m, 0, 0, 100, "m", \
         "of flies: standard deviation of the point that is sighted, about the aim point, in each of two axes across the " \
         "line of sight; drawn for each round, which keeps it") \
+    ROW(DOUBLE, , sight_memory, 0, 0, 0.99, "", \
+        "of flies: above 0, directions alone are measured, and a fading-memory filter, in which a measurement weighs this " \
+        "times as much as the next, makes rates of them; 0: true rates and range") \
+    ROW(DOUBLE, , sight_noise_mrad, 0, 0, 50, "mrad", \
+        "of flies with sight_memory: standard deviation of each direction, in each of two axes") \
     ROW(DOUBLE, , hit_m, 2, 0, 50, "m", "of flies: it goes off so near its aim point, or at its fuze's distance") \
     ROW(DOUBLE, , silent_s, 0, 0, 1000, "s", "time between its last Entity State and its end") \
     ROW(INT, , dead_reckoning, 0, 0, 9, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning")

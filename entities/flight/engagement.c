@@ -1,6 +1,8 @@
 /* entities/flight/engagement.c: the loop of sight, command and step, until something ends it. */
 #include "entities/flight/engagement.h"
 
+#include "entities/flight/sight_filter.h"
+
 /* Range beyond the closest approach at which nothing more is awaited. */
 static const double passed_m = 50;
 
@@ -48,6 +50,32 @@ static bool look(FlightSight *out, const Course *c, const FlightState *state, do
     }
     if (!flight_sight_true(out, t_s, eye, eye_mps, p, v, a)) return false;
     if (!c->e->ranged) out->range_m = out->closing_mps = NAN;
+    return true;
+}
+
+/* Turns a direction by the noise of the measurement of that number. */
+static void add_noise(double los[3], const Engagement *e, uint64_t number)
+{
+    const double other[3] = {fabs(los[2]) > 0.9, 0, fabs(los[2]) <= 0.9};
+    double       aside[3], above[3];
+    v3_cross(aside, los, other);
+    v3_normalize(aside, aside);
+    v3_cross(above, aside, los);
+    v3_add_scaled(los, los, e->noise_rad * random_normal(e->noise_seed, e->noise_stream, 0, number), aside);
+    v3_add_scaled(los, los, e->noise_rad * random_normal(e->noise_seed, e->noise_stream, 1, number), above);
+    v3_normalize(los, los);
+}
+
+/* A measurement as the filter has it. False: none that guides. */
+static bool measure(FlightSight *sight, SightFilter *filter, const Engagement *e)
+{
+    double eye[3], eye_mps[3];
+    if (!(e->filter_memory > 0)) return true;
+    add_noise(sight->los_ecef, e, (uint64_t)filter->count);
+    if (!sight_filter_take(filter, sight->t_s, sight->los_ecef)) return false;
+    memcpy(eye, sight->eye_ecef, sizeof eye);
+    memcpy(eye_mps, sight->eye_v_ecef_mps, sizeof eye_mps);
+    sight_filter_sight(sight, filter, eye, eye_mps);
     return true;
 }
 
@@ -109,14 +137,14 @@ static bool meets_ground(double *after_s, double p_ecef[3], const Course *c, con
 }
 
 /* Looks when it is time to, commands, and takes a step. */
-static bool advance(EngagementResult *r, Line *line, double *next_look_s, const Course *c)
+static bool advance(EngagementResult *r, Line *line, SightFilter *filter, double *next_look_s, const Course *c)
 {
     FlightState  *s = &r->state;
     FlightCommand command;
     FlightSight   sight;
     const double  t_s = flight_time_s(s, c->world);
     if (c->e->target && t_s >= *next_look_s - 1e-9) {
-        if (look(&sight, c, s, t_s)) put_in_line(line, &sight);
+        if (look(&sight, c, s, t_s) && measure(&sight, filter, c->e)) put_in_line(line, &sight);
         *next_look_s += c->e->sight_every_s > 0 ? c->e->sight_every_s : c->world->step_s;
     }
     flight_command(&command, c->missile, c->world, s, newest(line, t_s, c->e->sight_late_s));
@@ -132,6 +160,7 @@ void engagement_fly(EngagementResult *out, const Engagement *e, const Missile *m
     EngagementResult r = {.miss = miss_begin()};
     FlightState     *s = &r.state;
     Line             line = {.first = 0};
+    SightFilter      filter = sight_filter(e->filter_memory);
     MissLeg          leg, target;
     FlightSight      sight;
     double           none[3], next_look_s = (double)e->tick * world->step_s;
@@ -149,7 +178,7 @@ void engagement_fly(EngagementResult *out, const Engagement *e, const Missile *m
         const FlightState before = *s;
         const double      t_s = flight_time_s(s, world);
         double            after_s;
-        if (!advance(&r, &line, &next_look_s, &c)) {
+        if (!advance(&r, &line, &filter, &next_look_s, &c)) {
             r.end = FLIGHT_END_LOST;
             break;
         }

@@ -33,10 +33,14 @@ typedef struct Engagement {
     double aim_ecef[3];   /* what is sighted, from the target: an error that it keeps; the miss is the target's own */
     double sight_every_s; /* between measurements; 0: at each step */
     double sight_late_s;  /* age at which a measurement arrives */
-    bool   ranged;        /* a measurement has range and closing speed */
-    bool   ground;        /* a plane ends the flight */
-    double on_ecef[3], normal_ecef[3]; /* a point of it, unit normal upwards */
-    double until_s;                    /* after the launch; infinite: by life_s */
+    double filter_memory; /* above 0: directions alone are measured, and sight_filter.h makes rates of them; no range */
+    double noise_rad;     /* of these, in each of two axes; drawn by noise_seed and the number of the measurement */
+    uint64_t noise_seed;
+    uint32_t noise_stream;
+    bool     ranged;                     /* a measurement has range and closing speed */
+    bool     ground;                     /* a plane ends the flight */
+    double   on_ecef[3], normal_ecef[3]; /* a point of it, unit normal upwards */
+    double   until_s;                    /* after the launch; infinite: by life_s */
 } Engagement;
 
 typedef enum FlightEnd {

@@ -182,6 +182,12 @@ static void what_is_wrong_is_said(void **state)
     scenario_destroy(&scenario);
     CHECK(open_scene(&cast, &scenario, "shots.Loft.sight_late_s", "7") == STATUS_BAD_VALUE);
     scenario_destroy(&scenario);
+    CHECK(open_scene(&cast, &scenario, "shots.Loft.sight_noise_mrad", "1") == STATUS_BAD_VALUE);
+    CHECK(strstr(check_said, "give sight_memory too"));
+    scenario_destroy(&scenario);
+    CHECK(open_scene(&cast, &scenario, "shots.Loft.sight_late_s", "0.3") == STATUS_BAD_VALUE);
+    CHECK(strstr(check_said, "more than 200 measurements"));
+    scenario_destroy(&scenario);
     CHECK(open_scene(&cast, &scenario, "missiles", "/nowhere/missiles.csv") != STATUS_OK);
     scenario_destroy(&scenario);
     log_set_sink(NULL, NULL);

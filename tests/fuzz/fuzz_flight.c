@@ -3,6 +3,7 @@
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "entities/flight/engagement.h"
+#include "entities/flight/sight_filter.h"
 #include "terrain/earth/geodesy.h"
 
 #include <stdlib.h>
@@ -42,8 +43,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     world.air = data[1] % 3;
     world.step_s = data[1] & 64 ? 0.01 : 0.001;
     flight_launch(&s, m, &world, data[1] % 5, p, v);
-    Miss   miss = miss_begin();
-    size_t at = 2;
+    SightFilter filter = sight_filter(data[1] % 100 / 100.0);
+    Miss        miss = miss_begin();
+    size_t      at = 2;
     for (int i = 0; i < most_steps; i++) {
         const FlightState before = s;
         FlightSight       sight;
@@ -51,6 +53,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (at + sizeof sight > size) at = 2;
         memcpy(&sight, data + at, sizeof sight);
         if (i % 4 == 3) at += sizeof sight;
+        if (sight_filter_take(&filter, sight.t_s + 0.01 * i, sight.los_ecef) &&
+            !(fabs(v3_length(filter.los_ecef) - 1) < 1e-6 && v3_is_finite(filter.rate_ecef_rps)))
+            abort();
+        if (i % 3 == 1 && filter.count > 0) sight_filter_sight(&sight, &filter, s.p_ecef, s.v_ecef_mps);
         if (i % 8 == 1 && v3_is_finite(sight.los_ecef)) flight_lock(&s, m, sight.los_ecef);
         flight_command(&c, m, &world, &s, &sight);
         if (c.verdict < 0 || c.verdict >= flight_verdict_count || !*flight_verdict_name(c.verdict)) abort();
