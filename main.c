@@ -147,6 +147,7 @@ static const struct Command {
     {"inspect", inspect_command, "list the entities of a recording, what they did, what was malformed", true, true},
     {"check", check_command, "validate a configuration file; or print one to start from", true, true},
     {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true, false},
+    {"fly", fly_command, "fly the missiles of a scenario with true sight: how close they come; record it", true, false},
     {"record", record_command, "record an exercise from the network", false, false},
     {"model", model_command, "list models; describe or draw one, built in or from a file", true, false},
     {"heat", heat_command, "a vehicle's temperatures over a clear day: table, plot and thermal images", true, false},

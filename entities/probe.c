@@ -1,5 +1,5 @@
 /* entities/probe.c: the probes of entities: dead reckoning, articulation and models, one row at a time. */
-#include "entities/probe.h"
+#include "entities/probe_private.h"
 
 #include "entities/motion/dead_reckoning.h"
 
@@ -44,5 +44,22 @@ const Probe entities_probes[] = {
          "wz_rps?,dt_s",
      .out = "dr_x_m,dr_y_m,dr_z_m,dr_psi_rad,dr_theta_rad,dr_phi_rad",
      .row = dead_reckon_row},
+    {.name = "flight",
+     .help =
+         "flight of a missile of etc/missiles.csv (TABLE: of another) from a place, with true sight of a target that "
+         "keeps its acceleration, east, north, up at the launch: state at its end, ECEF, and closest approach "
+         "(etc/reference/flight.md). Ends at until_s, life, fuze, ground_u_m, or past the target. sight_every_s: time "
+         "between measurements, each sight_late_s old; ranged: 0: without range; earth: 1, 0: neither gravity nor "
+         "turning, 2: without turning; air: factor of density",
+     .arguments = "[TABLE]",
+     .in =
+         "missile$,lat_deg,lon_deg,height_m,azimuth_deg,elevation_deg,speed_mps?,target_e_m?,target_n_m?,target_u_m?,"
+         "target_ve_mps?,target_vn_mps?,target_vu_mps?,target_ae_mps2?,target_an_mps2?,target_au_mps2?,until_s?,step_s?,"
+         "sight_every_s?,sight_late_s?,ranged?,ground_u_m?,earth?,air?",
+     .out = "end_s,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps,mass_kg,mach,lateral_mps2,attack_deg,most_lateral_mps2,"
+            "most_attack_deg,most_gimbal_deg,miss_m,miss_s,miss_e_m,miss_n_m,miss_u_m,fuze_s,end$,sight$,guided_steps",
+     .open = flight_probe_open,
+     .row = flight_probe_row,
+     .close = flight_probe_close},
 };
 const int entities_probe_count = sizeof entities_probes / sizeof *entities_probes;

@@ -247,7 +247,8 @@ static Status cast_shot(Cast *cast, int shot, int *entity, int *round, int first
                                           .target = -1,
                                           .type = type,
                                           .fire_s = each->time_s + k * each->every_s,
-                                          .impact_s = INFINITY};
+                                          .impact_s = INFINITY,
+                                          .flight = -1};
         if (!each->entity) continue;
         cast->entity[*entity] =
             (CastEntity){.type = type,
@@ -342,5 +343,7 @@ void cast_destroy(Cast *cast)
     free(cast->route);
     free(cast->stop_s);
     free(cast->hidden);
+    for (int k = 0; k < cast->flight_count; k++) free(cast->flight[k].sample);
+    free(cast->flight);
     free(cast);
 }

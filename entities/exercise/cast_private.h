@@ -9,6 +9,7 @@
 #include "entities/catalog/catalog.h"
 #include "entities/exercise/hide_judge.h"
 #include "entities/exercise/scenario.h"
+#include "entities/flight/missile.h"
 #include "entities/motion/articulation.h"
 #include "entities/motion/dead_reckoning.h"
 #include "terrain/earth/geodesy.h"
@@ -115,7 +116,18 @@ typedef struct CastRound {
     double        launch_enu[3], impact_enu[3];
     DisEntityType type;
     int           result; /* result of its Detonation */
+    int           flight; /* of Cast.flight; -1: it goes along its line */
 } CastRound;
+
+/* How a round flew: entities/exercise/cast_flight.c. */
+typedef struct FlightSample FlightSample;
+typedef struct CastFlight {
+    int    round, samples, end; /* end: a FlightEnd of entities/flight/engagement.h */
+    bool   hit;
+    double miss_m, flight_s, end_mps; /* closest approach to the aim point, as if it flew on; until its Detonation */
+    double most_lateral_mps2, guided_share;
+    FlightSample *sample; /* [samples], of 10 ms */
+} CastFlight;
 
 /* A joint that its model has and the scenario moves. */
 typedef struct CastJoint {
@@ -133,6 +145,8 @@ typedef struct Cast {
     Route          *route;  /* route of each group; without knots: the group is stationary */
     double         *stop_s; /* when each group starts to stop; INFINITY: never */
     CastHidden     *hidden; /* [hidden_count] */
+    int             flight_count;
+    CastFlight     *flight; /* [flight_count] */
 } Cast;
 
 /* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not
@@ -167,6 +181,16 @@ void cast_marking(char marking[11], const Cast *cast, int entity);
  * entities/exercise/cast_shots.c */
 Status cast_solve_shots(Cast *cast, const int *ids, const int *first);
 void   cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);
+/* Flies a round whose launch, shooter and target (-1: at_enu) are known: its end, result, and where it is meanwhile.
+ * entities/exercise/cast_flight.c */
+Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double at_enu[3]);
+void   cast_flight_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);
+/* Whether an entity is a munition that flew so. */
+static inline bool cast_is_flown(const Cast *cast, int entity)
+{
+    const CastEntity *e = &cast->entity[entity];
+    return e->group < 0 && cast->round[e->round].flight >= 0;
+}
 
 /* Private to the cast: finds the place of each entity that hides, in file order, after all others are placed; nets are
  * then where what they cover is. entities/exercise/cast_hide.c */

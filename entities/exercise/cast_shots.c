@@ -6,6 +6,8 @@
 
 #include "dis/pdu/decode.h"
 
+#include <stdlib.h>
+
 static const double longest_flight_s = 600;
 
 static double flown_m(const ScenarioShot *shot, double flight_s)
@@ -47,7 +49,11 @@ void cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *round,
 {
     static const double h_s = 0.005;
     const ScenarioShot *shot = &cast->scenario->shot[round->shot];
-    double              line[3], up[3], right[3] = {1, 0, 0}, p[3][3], nose[3];
+    if (round->flight >= 0) {
+        cast_flight_pose(out, cast, round, t_s);
+        return;
+    }
+    double line[3], up[3], right[3] = {1, 0, 0}, p[3][3], nose[3];
     v3_sub(line, round->impact_enu, round->launch_enu);
     const double range_m = v3_length(line);
     up_at(up, &cast->ground, round->launch_enu);
@@ -170,9 +176,38 @@ static void damage(Cast *cast, const CastRound *round)
     e->hit_s = round->impact_s;
 }
 
+/* Flies a round by its row of the table of missiles, and says what came of it. */
+static Status fly(Cast *cast, CastRound *round)
+{
+    const Scenario     *s = cast->scenario;
+    const ScenarioShot *shot = &s->shot[round->shot];
+    char                path[scenario_path_size + 8];
+    Missile             missile;
+    double              at_enu[3];
+    if (*s->missiles) snprintf(path, sizeof path, "%s", s->missiles);
+    else if (!etc_path(path, sizeof path, "missiles.csv")) return STATUS_IO;
+    Status status = missile_read(&missile, path, shot->flies);
+    if (status != STATUS_OK) {
+        log_error("scenario: %s:%d: shots: flies: '%s' is no row of %s that can be used", s->path, shot->line,
+                  shot->flies, path);
+        return status;
+    }
+    launch_place(round, cast);
+    impact_place(at_enu, cast, round, round->fire_s); /* of a place, whose ground it meets; a target is followed */
+    at_enu[2] = exercise_ground_at(NULL, &cast->ground, at_enu[0], at_enu[1]);
+    status = cast_fly(cast, round, &missile, at_enu);
+    if (status != STATUS_OK) return status;
+    if (round->result == dis_result_entity_impact) damage(cast, round);
+    else round->target = -1;
+    return STATUS_OK;
+}
+
 Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
 {
     const Scenario *s = cast->scenario;
+    int             flown = 0;
+    for (int i = 0; i < cast->round_count; i++) flown += *s->shot[cast->round[i].shot].flies != 0;
+    if (flown && !(cast->flight = calloc((size_t)flown, sizeof *cast->flight))) return STATUS_NO_MEMORY;
     for (int i = 0; i < cast->round_count; i++) {
         CastRound          *round = &cast->round[i];
         const ScenarioShot *shot = &s->shot[round->shot];
@@ -180,6 +215,11 @@ Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
         if (!scenario_find(&group, &member, s, ids, shot->from)) return STATUS_BAD_VALUE;
         round->shooter = first[group] + member;
         if (*shot->at && scenario_find(&group, &member, s, ids, shot->at)) round->target = first[group] + member;
+        if (*shot->flies) {
+            const Status status = fly(cast, round);
+            if (status != STATUS_OK) return status;
+            continue;
+        }
         const bool gun = !shot->entity && cast->entity[round->shooter].carriage == CARRIAGE_LAND;
         if (!solve(round, cast) || (gun && !beyond_barrel(round, shot))) {
             double line[3];

@@ -274,6 +274,7 @@ static void look_at(Exercise *x, int entity, double t_s)
         send_state(x, entity, &k, appearance, whole, t_s);
         if (wrong(&again_s, x, said, &k, said->joint, said->joints, 0)) again_s = 0;
     }
+    if (cast_is_flown(x->cast, entity)) again_s = 0; /* its motor and guidance change what no bound foresees */
     const double beat_s = said->t_s + s->dis.heartbeat_s;
     double       next_s = t_s + fmin(again_s, longest_look_s);
     if (said->joints == 0 && said_still(&said->k) && cast_still(x->cast, entity, t_s)) next_s = beat_s;

@@ -273,9 +273,19 @@ static bool shot_fits(const Scenario *s, const int *ids, const ScenarioShot *sho
         log_error("scenario: %s:%d: shots: at: '%s' shoots at itself", s->path, shot->line, shot->at);
         return false;
     }
-    if (!*shot->at && shot->hit == SCENARIO_HIT_ENTITY) {
+    if (!*shot->at && !*shot->flies && shot->hit == SCENARIO_HIT_ENTITY) {
         log_error("scenario: %s:%d: shots: hit: a place is not an entity; use hit: ground, or miss", s->path,
                   shot->line);
+        return false;
+    }
+    if (shot->sight_noise_mrad > 0 && !(shot->sight_memory > 0)) {
+        log_error("scenario: %s:%d: shots: sight_noise_mrad: true rates have no noise; give sight_memory too, as 0.7",
+                  s->path, shot->line);
+        return false;
+    }
+    if (shot->sight_late_s > 200 * fmax(shot->sight_every_s, 0.001)) {
+        log_error("scenario: %s:%d: shots: sight_late_s: %g s is more than 200 measurements, at sight_every_s of %g",
+                  s->path, shot->line, shot->sight_late_s, shot->sight_every_s);
         return false;
     }
     if (shot->launch_m.count != 0 && shot->launch_m.count != 3) {
@@ -298,11 +308,16 @@ static bool date_fits(const Scenario *s, const char *key, const char *text)
 
 static bool counts_fit(const Scenario *s)
 {
-    long long entities = 0, rounds = 0;
+    long long entities = 0, rounds = 0, flown = 0;
     for (int i = 0; i < s->group_count; i++) entities += scenario_group_size(s, &s->group[i]);
     for (int i = 0; i < s->shot_count; i++) {
         entities += munitions(&s->shot[i]);
         rounds += s->shot[i].rounds;
+        flown += *s->shot[i].flies ? s->shot[i].rounds : 0;
+    }
+    if (flown > scenario_max_flown) {
+        log_error("scenario: %s: shots: %lld rounds fly (flies); at most %d", s->path, flown, scenario_max_flown);
+        return false;
     }
     if (entities <= scenario_max_entities && rounds <= scenario_max_rounds) return true;
     log_error("scenario: %s: %lld entities and %lld rounds; at most %d and %d (vehicles: count, shots: rounds, scale)",
@@ -411,13 +426,28 @@ Status scenario_set_group(Scenario *scenario, const char *name, const char *key,
     return STATUS_BAD_VALUE;
 }
 
-/* vehicles.NAME.key, whose name may hold dots. False: it is of no group. */
-static bool split_group_key(char name[scenario_name_size], const char **key, const char *text)
+Status scenario_set_shot(Scenario *scenario, const char *name, const char *key, const char *value, const char *source)
 {
-    static const char of_groups[] = "vehicles.";
-    const char       *dot = strrchr(text, '.'), *from = text + sizeof of_groups - 1;
-    if (strncmp(text, of_groups, sizeof of_groups - 1) != 0 || dot <= from || dot - from >= scenario_name_size)
-        return false;
+    bool any = false;
+    for (int i = 0; i < scenario->shot_count; i++) {
+        ScenarioShot *shot = &scenario->shot[i];
+        if (strcmp(shot->name, name) != 0) continue;
+        const Status status = settings_set(shot, NULL, &shot_table, key, value, source);
+        if (status != STATUS_OK) return status;
+        any = true;
+    }
+    if (any) return STATUS_OK;
+    char shown[128];
+    text_escape(shown, sizeof shown, name, strlen(name));
+    log_error("scenario: %s: there are no shots with name: '%s'", source, shown);
+    return STATUS_BAD_VALUE;
+}
+
+/* LIST.NAME.key, with list: `vehicles.` or `shots.`; the name may hold dots. False: it is of no item of that list. */
+static bool split_key(char name[scenario_name_size], const char **key, const char *text, const char *list)
+{
+    const char *dot = strrchr(text, '.'), *from = text + strlen(list);
+    if (strncmp(text, list, strlen(list)) != 0 || dot <= from || dot - from >= scenario_name_size) return false;
     memcpy(name, from, (size_t)(dot - from));
     name[dot - from] = 0;
     *key = dot + 1;
@@ -427,18 +457,20 @@ static bool split_group_key(char name[scenario_name_size], const char **key, con
 Status scenario_set_any(Scenario *scenario, const char *key, const char *value, const char *source)
 {
     char        name[scenario_name_size];
-    const char *of_group;
-    return split_group_key(name, &of_group, key) ? scenario_set_group(scenario, name, of_group, value, source)
-                                                 : scenario_set(scenario, key, value, source);
+    const char *of_item;
+    if (split_key(name, &of_item, key, "vehicles.")) return scenario_set_group(scenario, name, of_item, value, source);
+    if (split_key(name, &of_item, key, "shots.")) return scenario_set_shot(scenario, name, of_item, value, source);
+    return scenario_set(scenario, key, value, source);
 }
 
 bool scenario_key_type(SettingType *out, const char *key)
 {
     char                name[scenario_name_size];
-    const char         *of_group;
-    const bool          group = split_group_key(name, &of_group, key);
-    const SettingTable *of = group ? &group_table : &table;
-    const int           row = settings_find(of, group ? of_group : key);
+    const char         *of_item = key;
+    const SettingTable *of = split_key(name, &of_item, key, "vehicles.") ? &group_table
+                             : split_key(name, &of_item, key, "shots.")  ? &shot_table
+                                                                         : &table;
+    const int           row = settings_find(of, of_item);
     if (row < 0) return false;
     *out = of->row[row].type;
     return true;

@@ -16,6 +16,7 @@ enum {
     scenario_max_shots = 1000,
     scenario_max_entities = 50000, /* clones and munitions included */
     scenario_max_rounds = 20000,
+    scenario_max_flown = 256, /* rounds that fly: each keeps some 10 kB a second */
 };
 
 /* The keys, as pitviper_settings.h says; those of an item of `vehicles`, then of `shots`. */
@@ -99,6 +100,20 @@ enum {
         (SCENARIO_DAMAGE_NONE, "none")(SCENARIO_DAMAGE_SLIGHT, "slight")(SCENARIO_DAMAGE_MODERATE, "moderate") \
         (SCENARIO_DAMAGE_DESTROYED, "destroyed"), \
         "damage of the entity that is hit") \
+    ROW(TEXT, , flies, "", 32, "", \
+        "row of the table of missiles by which it flies, with true sight of its target, and hits or not; empty: along " \
+        "the line that launch_mps, boost_*, drag_mps2, loft_m, weave_m and hit say") \
+    ROW(DOUBLE, , sight_every_s, 0, 0, 10, "s", "of flies: time between measurements of the line of sight; 0: 1 ms") \
+    ROW(DOUBLE, , sight_late_s, 0, 0, 5, "s", "of flies: age of a measurement when it arrives") \
+    ROW(DOUBLE, , sight_error_m, 0, 0, 100, "m", \
+        "of flies: standard deviation of the point that is sighted, about the aim point, in each of two axes across the " \
+        "line of sight; drawn for each round, which keeps it") \
+    ROW(DOUBLE, , sight_memory, 0, 0, 0.99, "", \
+        "of flies: above 0, directions alone are measured, and a fading-memory filter, in which a measurement weighs this " \
+        "times as much as the next, makes rates of them; 0: true rates and range") \
+    ROW(DOUBLE, , sight_noise_mrad, 0, 0, 50, "mrad", \
+        "of flies with sight_memory: standard deviation of each direction, in each of two axes") \
+    ROW(DOUBLE, , hit_m, 2, 0, 50, "m", "of flies: it goes off so near its aim point, or at its fuze's distance") \
     ROW(DOUBLE, , silent_s, 0, 0, 1000, "s", "time between its last Entity State and its end") \
     ROW(INT, , dead_reckoning, 0, 0, 9, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning")
 
@@ -109,7 +124,8 @@ enum {
 #define SCENARIO_TOP(ROW) \
     ROW(DOUBLE, , duration_s, 30, 0, 1e6, "s", "") \
     ROW(LONG, , seed, 1, 0, 1e15, "", "seed of all random numbers") \
-    ROW(DOUBLE, , scale, 1, 0.0001, 1000, "", "factor of every count above 1")
+    ROW(DOUBLE, , scale, 1, 0.0001, 1000, "", "factor of every count above 1") \
+    ROW(PATH, , missiles, "", scenario_path_size, "table of missiles, for shots with flies; empty: etc/missiles.csv")
 
 #define SCENARIO_PLACE(ROW) \
     ROW(DOUBLE, place., lat_deg, 36, -90, 90, "deg", "where x and y are 0") \
@@ -214,8 +230,10 @@ Status scenario_set(Scenario *scenario, const char *key, const char *value, cons
 /* A key of an item of vehicles, by the item's name: of all items of that name. STATUS_BAD_VALUE, logged: there is none,
  * or as scenario_set. `net` is a key of the file alone. */
 Status scenario_set_group(Scenario *scenario, const char *name, const char *key, const char *value, const char *source);
+/* The same of an item of shots, by the name of its munition. */
+Status scenario_set_shot(Scenario *scenario, const char *name, const char *key, const char *value, const char *source);
 /* A key as a command line or an axis of a sweep gives it: `seed`, `dis.version`, or `vehicles.NAME.key` of all
- * vehicles of that name. */
+ * vehicles of that name, `shots.NAME.key`. */
 Status scenario_set_any(Scenario *scenario, const char *key, const char *value, const char *source);
 /* Of which type such a key is; false: there is none. */
 bool scenario_key_type(SettingType *out, const char *key);

@@ -25,6 +25,8 @@ int inspect_command(int argc, char **argv);
 int check_command(int argc, char **argv);
 /* `pitviper exercise`: a generated exercise, written as a recording or sent on the network. */
 int exercise_command(int argc, char **argv);
+/* `pitviper fly`: the missiles of a scenario, flown with true sight; how close they came, and a recording. */
+int fly_command(int argc, char **argv);
 /* `pitviper record -o LOG`: records an exercise from the network into a capture file until SIGINT, SIGTERM, SIGHUP or
  * another signal that would end it, --for or --count; an exercise of which nothing was heard counts as recorded. */
 int record_command(int argc, char **argv);

@@ -8,16 +8,15 @@
 #include "entities/exercise/exercise.h"
 #include "sensor/settings/command_line.h"
 #include "sensor/commands/exercise_places_private.h"
+#include "sensor/commands/exercise_scenario_private.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/commands/plant_judge.h"
 #include "sensor/node/run/stop.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <netdb.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -59,7 +58,8 @@ static const char help[] =
     "scenario\n"
     "  --set KEY=VALUE      one key of the scenario, such as dis.version=6, dis.bundle=true, place.lat_deg=44 or "
     "seed=7;\n"
-    "                       may be repeated; vehicles.NAME.KEY=VALUE is of all vehicles of that name\n"
+    "                       may be repeated; vehicles.NAME.KEY=VALUE is of all vehicles of that name,\n"
+    "                       shots.NAME.KEY=VALUE of all shots\n"
     "  --keys               print every key of a scenario, with its range and default\n"
     "with --send\n"
     "  --interface NAME     send from this network interface, such as eth0\n"
@@ -216,63 +216,6 @@ static int parse(Options *o, int argc, char **argv)
     return !o->send || parse_address(&o->udp, o->send) ? 0 : 1 + 2;
 }
 
-static bool apply_set(Scenario *scenario, const char *text)
-{
-    char        key[96];
-    const char *equals = strchr(text, '=');
-    if (!equals || equals - text >= (long)sizeof key) {
-        log_error("exercise: --set: '%s' is not KEY=VALUE, for example dis.version=6", text);
-        return false;
-    }
-    memcpy(key, text, (size_t)(equals - text));
-    key[equals - text] = 0;
-    return scenario_set_any(scenario, key, equals + 1, "--set") == STATUS_OK;
-}
-
-static bool is_file(const char *path)
-{
-    struct stat about;
-    return stat(path, &about) == 0 && !S_ISDIR(about.st_mode);
-}
-
-/* Lists the scenarios that come with the program. */
-static WordMeant scenario_meant(const char *name)
-{
-    WordMeant meant = word_meant(name);
-    char      folder[path_size];
-    DIR      *there = etc_path(folder, sizeof folder, "scenarios") ? opendir(folder) : NULL;
-    for (struct dirent *entry; there && (entry = readdir(there));) {
-        char  known[256];
-        char *dot;
-        snprintf(known, sizeof known, "%s", entry->d_name);
-        if (!(dot = strrchr(known, '.')) || strcmp(dot, ".yaml") != 0) continue;
-        *dot = 0;
-        word_consider(&meant, known);
-    }
-    if (there) closedir(there);
-    return meant;
-}
-
-/* A file, or the name of a scenario that comes with the program; a folder of that name is neither. */
-static Status read_scenario(Scenario *scenario, const Options *o)
-{
-    char path[path_size], name[256];
-    snprintf(path, sizeof path, "%s", o->scenario);
-    if (!is_file(path) && !strchr(o->scenario, '/') && !strchr(o->scenario, '.') && strlen(o->scenario) < 200) {
-        snprintf(name, sizeof name, "scenarios/%s.yaml", o->scenario);
-        char bundled[path_size];
-        if (!etc_path(bundled, sizeof bundled, name) || !is_file(bundled)) {
-            WordMeant meant = scenario_meant(o->scenario);
-            log_error("exercise: there is no file '%s' and no scenario of that name%s `pitviper exercise --help` lists "
-                      "them",
-                      o->scenario, *word_hint(&meant) ? meant.hint : ";");
-            return STATUS_BAD_VALUE;
-        }
-        memcpy(path, bundled, sizeof path);
-    }
-    return scenario_read(scenario, path);
-}
-
 /* ---- destinations of datagrams ----------------------------------------------------------------------- */
 
 typedef struct Run {
@@ -330,16 +273,6 @@ static void show_progress(const Exercise *exercise)
     snprintf(text, sizeof text, "%.0f s  %d entities  %llu PDUs  %llu datagrams", exercise_time(exercise),
              exercise_most_received(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams);
     log_status(text);
-}
-
-static double epoch_of(const Scenario *scenario, bool live)
-{
-    static const double undated_unix_s = 1e9;       /* a round time, recognisable as not a date */
-    static const double summer_unix_s = 1718992800; /* 2024-06-21 18:00 UTC */
-    double              unix_s;
-    if (live) return 1e-9 * (double)dis_udp_now_ns();
-    if (*scenario->dis.date && text_to_unix_s(&unix_s, scenario->dis.date)) return unix_s;
-    return scenario->dis.stamps == SCENARIO_STAMPS_ABSOLUTE ? summer_unix_s : undated_unix_s;
 }
 
 static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed)
@@ -405,11 +338,11 @@ int exercise_command(int argc, char **argv)
     const int   stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
 
-    Status status = read_scenario(&scenario, &o);
+    Status status = exercise_scenario_read(&scenario, "exercise", o.scenario);
     if (status == STATUS_NO_MEMORY) log_error("exercise: out of memory");
     if (status != STATUS_OK) return 1;
     for (int i = 0; i < o.set_count; i++)
-        if (!apply_set(&scenario, o.set[i])) {
+        if (!exercise_scenario_set(&scenario, "exercise", o.set[i])) {
             scenario_destroy(&scenario);
             return 2;
         }
@@ -424,7 +357,7 @@ int exercise_command(int argc, char **argv)
     if (status == STATUS_OK) status = exercise_places(cast, o.places, o.overwrite);
     if (status == STATUS_OK) {
         stop_by_signals();
-        const double epoch_unix_s = epoch_of(&scenario, o.send != NULL);
+        const double epoch_unix_s = o.send ? 1e-9 * (double)dis_udp_now_ns() : exercise_scenario_epoch(&scenario);
         status = open_outputs(&run, &o, epoch_unix_s);
         if (status == STATUS_OK) status = play(&run, cast, epoch_unix_s, o.speed);
     }

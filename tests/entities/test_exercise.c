@@ -104,7 +104,9 @@ static const char everybody[] =
     "  - {name: Ship, type: ship, id: 41, speed_mps: 12, turret: swing, route_m: [[2000, -3000], [2200, -2900], [2500, -3100]]}\n"
     "  - {name: Man, type: person, id: 42, speed_mps: 1.5, route_m: [[0, -20], [5, -5], [0, 10], [15, 20], [15, 40]]}\n"
     "shots:\n"
-    "  - {name: Missile, id: 51, from: Heli 22, at: Tank 4, time_s: 15}\n";
+    "  - {name: Missile, id: 51, from: Heli 22, at: Tank 4, time_s: 15}\n"
+    "  - {name: Flown, id: 52, from: Heli 22, at: Tank 2, time_s: 3, flies: at_loft, damage: none}\n"
+    "  - {name: Flown, id: 53, from: Tank 1, at: Jet 31, time_s: 9, flies: sam_ir, damage: none}\n";
 
 static void keeps_its_promise(const char *set)
 {
@@ -114,8 +116,10 @@ static void keeps_its_promise(const char *set)
     Heard     heard = {.fixture = &f};
     Cast     *cast = cast_of(&scenario, everybody, set);
     double    worst_m = 0, worst_rad = 0, worst_joint_rad = 0;
-    long      looks = 0;
-    uint32_t  draw = 0;
+    double    spin_rps[64] = {0},
+           bend_mps2[64] = {0}; /* of flown munitions so far: a motor and guidance begin and end at once */
+    long     looks = 0;
+    uint32_t draw = 0;
     CHECK(exercise_create(&exercise, cast, 1e9, receive_datagram, &heard) == STATUS_OK);
     const double tick_s = 1 / scenario.dis.rate_hz, threshold_rad = scenario.dis.threshold_deg * rad_per_deg;
     for (bool more = true; more;) {
@@ -146,11 +150,17 @@ static void keeps_its_promise(const char *set)
              * knew of has by then made sqrt(2 a T). It is the truth's own (2 |a|: the sender may validate the
              * opposite), and 2 m/s2 for what begins, and w x v where the path turns with the body; of the attitude
              * 0.5 rad/s2, and the whole rate where the algorithm holds it. */
-            const double spin_rps = v3_length(truth.w_body_rps), limit_m = scenario.dis.threshold_m;
-            const double bent_mps2 = dead_reckoning_in_body_axes(e->algorithm) ? spin_rps * v3_length(truth.v_mps) : 0;
-            const double unknown_mps2 = 2 * v3_length(truth.a_mps2) + bent_mps2 + 2;
-            const double turn_rps =
-                dead_reckoning_turns(e->algorithm) ? sqrt(2 * 0.5 * threshold_rad) : spin_rps + 0.05;
+            const bool   flown = cast_is_flown(cast, i);
+            const double limit_m = scenario.dis.threshold_m;
+            CHECK(i < 64);
+            spin_rps[i] = fmax(flown ? spin_rps[i] : 0, v3_length(truth.w_body_rps));
+            bend_mps2[i] = fmax(flown ? bend_mps2[i] : 0, v3_length(truth.a_mps2));
+            const double bent_mps2 =
+                dead_reckoning_in_body_axes(e->algorithm) ? spin_rps[i] * v3_length(truth.v_mps) : 0;
+            const double unknown_mps2 = 2 * bend_mps2[i] + bent_mps2 + 2;
+            const double turn_rps = flown                                ? 2 * spin_rps[i]
+                                    : dead_reckoning_turns(e->algorithm) ? sqrt(2 * 0.5 * threshold_rad)
+                                                                         : spin_rps[i] + 0.05;
             /* an update keeps the rates of the last Entity State while they differ by less than this */
             const double stale_rps = scenario.dis.updates ? 0.1 : 0;
             if (!(v3_length(off) <= limit_m + sqrt(2 * unknown_mps2 * limit_m) * tick_s))

@@ -5,6 +5,7 @@
 
 #include "pitviper_channels.h"
 #include "entities/catalog/catalog.h"
+#include "entities/flight/flight.h"
 #include "entities/scenery/scenery_clutter.h"
 #include "entities/traces/effect_puffs.h"
 #include "render/heat/construction.h"
@@ -37,6 +38,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
                                        "surfaces.csv",
                                        "clutter.csv",
                                        "clutter_rear_area.csv",
+                                       "missiles.csv",
                                        "sensors.csv",
                                        "sensors/example_flir2.sheet",
                                        "radars.csv",
@@ -124,6 +126,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     (void)channels_check(path);
     (void)scenery_clutter_check(path);
+    Missile missile;
+    int     missiles;
+    if (missile_read_all(&missile, 1, &missiles, path) == STATUS_OK) {
+        if (!(missiles >= 1 && missile.mass_kg > 0 && missile.lag_s > 0 && missile.area_m2 > 0)) abort();
+        for (double age_s = -1; age_s < 2000; age_s += 0.7)
+            if (!(missile_mass_kg(&missile, age_s) >= 0.09 * missile.mass_kg)) abort();
+    }
     SpectralResponse *response;
     if (response_open(&response, path) == STATUS_OK) {
         if (!(response->nodes > 0 && response->nodes <= response_nodes_most)) abort();

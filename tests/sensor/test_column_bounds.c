@@ -3,6 +3,7 @@
 #include "tests/check.h"
 
 #include "entities/catalog/catalog.h"
+#include "entities/flight/missile.h"
 #include "entities/scenery/scenery_clutter.h"
 #include "entities/traces/effect_puffs.h"
 #include "pitviper_table.h"
@@ -67,6 +68,12 @@ static Status read_layers(const char *path)
     char                 constructions[4096];
     CHECK(etc_path(constructions, sizeof constructions, "constructions.csv"));
     return constructions_open(&c, constructions, path);
+}
+static Status read_missiles(const char *path)
+{
+    Missile m;
+    int     count;
+    return missile_read_all(&m, 1, &count, path);
 }
 static Status read_effects(const char *path)
 {
@@ -204,6 +211,7 @@ static const struct Reader {
     {"construction_layers.csv", read_layers, NULL},
     {"ground_detail.csv", read_detail, NULL},
     {"effects.csv", read_effects, NULL},
+    {"missiles.csv", read_missiles, NULL},
     {"quality.csv", read_quality, NULL},
     {"sensors.csv", read_sensor, NULL},
     {"radars.csv", read_radar, NULL},
