@@ -7,7 +7,8 @@
  * in the boxes of targets that are too large for a target grid and small enough to have such parts are always
  * sampled again, and so are thin pieces of larger targets and the ground where a small target's shadow falls. Plants
  * are no edges among themselves or against the ground behind them, or every pixel of a wood would be one: they are
- * filtered (leaf_filter.c). Within a few pixels of a target they are refined. */
+ * filtered (leaf_filter.c). Within a few pixels of a target they are refined. So is scenery where pixels are wide:
+ * there its borders are as many as leaves. */
 
 #include "render/frame/frame_private.h"
 #include "render/trace/parts/parts.h"
@@ -19,8 +20,9 @@ static const double about_px = 3; /* plants so near a target's box hide parts of
 static const double thin_px = 6;  /* a shadow of more rows than this is met by samples, and its edges are found */
 static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, with the sun at 45 degrees */
 static const double step_part = 0.05, step_ground = 0.5; /* of the range */
-static const double scenery_px_m =
-    0.5;                            /* wider pixels show houses as a texture: like plants', its borders are no edges */
+/* Wider pixels show houses as a texture: like plants', its borders, and those of shadows amid it, are no edges but
+ * within a few pixels of a target. Their error: `bench precision`, "borders of scenery". */
+static const double scenery_px_m = 0.25;
 static const double kinds_bent = 1; /* of the change of range from pixel to pixel: real ground is not planar */
 
 static void mark_box(Job *job, const double box[4], RefineFlag flag)
@@ -209,6 +211,21 @@ static bool steps_in_depth(const Job *job, const PixelPair *pair, double step_m,
     return either ? from_a || from_b : from_a && from_b;
 }
 
+/* Whether a pixel of this width, not near a target, shows scenery as a texture. */
+static bool is_texture(const Job *job, size_t px, double px_m)
+{
+    const double widest_m = job->request->scenery_px_m > 0 ? job->request->scenery_px_m : scenery_px_m;
+    return px_m > widest_m && !(job->refine[px] & refine_leaves);
+}
+
+/* The edge of a shadow. Amid scenery most are those of houses, and cost as much as its borders. */
+static unsigned shadow_edge(const Job *job, size_t px, double px_m)
+{
+    const bool near = job->refine[px] & refine_leaves;
+    if (!job->scene.world->scenery || near || job->request->samples > 1) return refine_sun;
+    return is_texture(job, px, px_m) ? 0 : refine_shade;
+}
+
 /* leaves: plants are edges. */
 static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, bool leaves)
 {
@@ -222,7 +239,7 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
                                  : refine_step; /* scenery is what targets stand before */
     const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
     if (sky_a && sky_b) return 0;
-    if (part && !entity && !sky_a && !sky_b && px_m > scenery_px_m) return 0;
+    if (part && !entity && !sky_a && !sky_b && is_texture(job, a, px_m)) return 0;
     if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return edge;
     if (part && p->instance && p->instance[a] != p->instance[b]) return edge;
     if (sky_a != sky_b) return refine_step;
@@ -235,7 +252,8 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
     const PixelPair pair = {a, b, xa, ya, xb, yb};
     if (!(cosine > sharp_cosine) || steps_in_depth(job, &pair, step_m, kinds ? kinds_bent : 0, kinds)) return edge;
     if (part && other) return edge;
-    return (other ? refine_ground : 0) | ((job->sun[a] > 0) != (job->sun[b] > 0) ? refine_sun : 0);
+    const bool shade = (job->sun[a] > 0) != (job->sun[b] > 0);
+    return (other ? refine_ground : 0) | (!shade ? 0 : entity ? refine_sun : shadow_edge(job, a, px_m));
 }
 
 /* What a pair of neighbours is, in find_pairs: it may be an edge; they are clearly alike; some plant is in it, and it
@@ -331,7 +349,7 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, const Tile *tile
             bool             leafy;
             unsigned         flag = flags_of_pairs(&leafy, job, x, y, &pairs);
             const bool       smoothed = leafy && !(flag & refine_leaves);
-            if (smoothed) flag &= ~(unsigned)(refine_sun | refine_ground);
+            if (smoothed) flag &= ~(unsigned)(refine_sun | refine_shade | refine_ground);
             if (job->request->samples > 1)
                 flag &= ~(unsigned)(refine_step | refine_scenery | refine_plants | refine_ground); /* all flags set */
             ask[at] = grounds && !(flag & refine_all) && !smoothed &&

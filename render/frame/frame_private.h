@@ -296,6 +296,7 @@ typedef enum RefineFlag {
     refine_plants = 16,  /* leaf_samples a side, which join the first one; every band: plants about a target */
     refine_leaves = 32,  /* a mark: plants are refined here */
     refine_scenery = 64, /* 2 a side, which join the first one; every band: borders of scenery */
+    refine_shade = 128,  /* 2 a side, which join the first one, optical and MWIR: edges of shadows amid scenery */
 } RefineFlag;
 
 /* Marks what is always refined: bounding boxes of medium-sized targets, and the ground where a target's shadow

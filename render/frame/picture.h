@@ -40,6 +40,7 @@ typedef struct RenderRequest {
     bool   hand_over_cells; /* keep the samples of small targets for a detector behind optics: Picture.small */
     double t_s;             /* exercise time: plants sway by it */
     double low_plants_m;    /* low plants stand within this of the eye; 0: none */
+    double scenery_px_m;    /* pixels wider than this show scenery as a texture (edges.c); 0: the default */
     double profile_near_m, profile_bin_m; /* radar range profile */
     int    profile_bins;
     Sampling            sampling;

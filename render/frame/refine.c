@@ -138,12 +138,14 @@ static void add_variance(const Worker *w, const Job *job, double sum[picture_pla
 /* Samples the block's pixels with n more samples a side. law: receives their squared errors; NULL: not needed. */
 static void refine_block(Worker *w, const Job *job, const Refinement *how, int listed, bool crowd, double *law)
 {
-    PixelBlock  *block = &w->block;
-    Samples     *s = &w->samples;
-    const bool   areas = job->picture->target && !(how->has & refine_sun), ground = how->has & refine_ground;
+    PixelBlock *block = &w->block;
+    Samples    *s = &w->samples;
+    const bool  areas = job->picture->target && !(how->has & (refine_sun | refine_shade)),
+               ground = how->has & refine_ground;
     const bool   sums = job->picture->target || job->picture->profile, remembered = planes_remember(job);
-    const double share = how->has & (refine_plants | refine_scenery) ? (double)(how->n * how->n) / (1 + how->n * how->n)
-                                                                     : 1; /* of them in all */
+    const double share = how->has & (refine_plants | refine_scenery | refine_shade)
+                             ? (double)(how->n * how->n) / (1 + how->n * how->n)
+                             : 1; /* of them in all */
     if (sums && remembered && !ground) take_back(w, job, how->bands, share);
     block->n = how->n;
     if (ground) {
@@ -231,8 +233,10 @@ void refine_tile(void *user, int worker, int task)
         {refine_scenery, refine_all | refine_step, all, 2},
         {refine_plants, whole, all, leaf_samples(job->request)},
         {refine_sun, whole | refine_plants, sunlit, edge},
-        {refine_ground, whole | refine_plants | refine_sun, no_radar, 1},
+        {refine_shade, whole | refine_plants | refine_sun, sunlit, 2},
+        {refine_ground, whole | refine_plants | refine_sun | refine_shade, no_radar, 1},
         {refine_ground | refine_sun, whole | refine_plants, lwir, 1},
+        {refine_ground | refine_shade, whole | refine_plants | refine_sun, lwir, 1},
     };
     uint8_t flags_of[hits_capacity];
     if (!may_refine(job, &tile)) return;
@@ -254,9 +258,10 @@ void refine_tile(void *user, int worker, int task)
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
         const Refinement *how = &ways[k];
         if ((any & how->has) != how->has || how->bands == 0) continue;
-        double *law = job->law && !(how->has & (refine_step | refine_scenery | refine_plants | refine_ground))
-                          ? job->law[task]
-                          : NULL;
+        double *law =
+            job->law && !(how->has & (refine_step | refine_scenery | refine_plants | refine_ground | refine_shade))
+                ? job->law[task]
+                : NULL;
         w->block.pixels = w->block.columns = 0;
         for (int y = tile.y0; y < tile.y1; y++)
             for (int x = tile.x0; x < tile.x1; x++) {

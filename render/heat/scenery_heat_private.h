@@ -83,6 +83,14 @@ int scenery_facet(double share[2], int facets, const double n_enu[3]);
 
 /* ---- clutter: scenery_states.c ----------------------------------------------------------------- */
 
+/* The open place at one time, without the ground. */
+typedef struct TimedPlace {
+    double    unix_s; /* NaN: none */
+    PlaceHeat place;
+} TimedPlace;
+
+enum { times_kept = 256 };
+
 typedef struct SceneryStates {
     const SceneryHeatConfig *config;
     const Scenery           *scenery;
@@ -95,8 +103,7 @@ typedef struct SceneryStates {
     Snapshot                 snapshot;
     SnapshotEntity          *entity; /* [states] */
     double                   at_s;   /* exercise time of the last tick */
-    double                   place_s;
-    PlaceHeat                place; /* of place_s */
+    TimedPlace              *place;  /* [times_kept]: states ask for the same times, one after the other */
 } SceneryStates;
 
 Status scenery_states_open(SceneryStates *states, SceneryWalls *walls);

@@ -9,27 +9,38 @@ static const double window_us = 1000; /* of work in 0.1 s of exercise time, once
 
 /* ---- what is about them ------------------------------------------------------------------------ */
 
+/* The slot of a time: a table by its bits. */
+static TimedPlace *slot_of(SceneryStates *s, double unix_s)
+{
+    uint64_t bits;
+    memcpy(&bits, &unix_s, sizeof bits);
+    bits *= UINT64_C(0x9E3779B97F4A7C15);
+    return &s->place[bits >> 56];
+}
+
 /* Open level grass, whatever the place. */
 static Status place_there(PlaceHeat *out, const void *user, double unix_s, const double p_enu[3], bool present)
 {
-    SceneryStates           *s = (SceneryStates *)user; /* the cache alone changes */
+    SceneryStates           *s = (SceneryStates *)user; /* what it remembers alone changes */
     const SceneryHeatConfig *c = s->config;
+    TimedPlace              *at = slot_of(s, unix_s);
+    _Static_assert(times_kept == 1 << 8, "as many as eight bits say");
     (void)p_enu;
-    if (s->place_s != unix_s) {
+    if (at->unix_s != unix_s) {
         GroundWeather w;
         c->heat.weather(&w, unix_s, c->heat.user);
-        s->place = (PlaceHeat){.air_k = w.air.temp_k,
-                               .air_density = 1,
-                               .direct_w_m2 = w.direct_w_m2,
-                               .diffuse_w_m2 = w.diffuse_w_m2,
-                               .longwave_w_m2 = w.longwave_w_m2,
-                               .ground_rho = 1 - c->ground->kind[SURFACE_GRASS].absorptance,
-                               .water_k = fmax(w.air.temp_k, 273.15)};
-        memcpy(s->place.sun_d_enu, w.sun_d_enu, sizeof w.sun_d_enu);
-        if (c->wind) c->wind(s->place.wind_enu_mps, unix_s, c->heat.user);
-        s->place_s = unix_s;
+        at->place = (PlaceHeat){.air_k = w.air.temp_k,
+                                .air_density = 1,
+                                .direct_w_m2 = w.direct_w_m2,
+                                .diffuse_w_m2 = w.diffuse_w_m2,
+                                .longwave_w_m2 = w.longwave_w_m2,
+                                .ground_rho = 1 - c->ground->kind[SURFACE_GRASS].absorptance,
+                                .water_k = fmax(w.air.temp_k, 273.15)};
+        memcpy(at->place.sun_d_enu, w.sun_d_enu, sizeof w.sun_d_enu);
+        if (c->wind) c->wind(at->place.wind_enu_mps, unix_s, c->heat.user);
+        at->unix_s = unix_s;
     }
-    *out = s->place;
+    *out = at->place;
     const WallsTable *t = s->walls->table;
     const double      share = scenery_walls_share(s->walls, unix_s);
     out->ground_k = out->under_k = out->air_k;
@@ -150,13 +161,14 @@ static Status restart(SceneryStates *s)
                                        .window_us = INFINITY,
                                        .unix_s = c->heat.unix_s,
                                        .capacity = scenery_most_states,
+                                       .alone = true,
                                        .place = place_there,
                                        .user = s};
     const VehicleHeatWorld   world = {
           .materials = &s->materials, .table = c->parts, .frame = c->frame, .tracer = s->tracer, .patches = &s->patches};
     vehicle_heat_destroy(s->heat);
     s->heat = NULL;
-    s->place_s = NAN;
+    for (int k = 0; k < times_kept; k++) s->place[k].unix_s = NAN;
     Status status = vehicle_heat_create(&s->heat, &config, &world);
     if (status == STATUS_OK) status = begin(s);
     if (status == STATUS_OK) vehicle_heat_limit(s->heat, window_us);
@@ -180,7 +192,8 @@ Status scenery_states_open(SceneryStates *s, SceneryWalls *walls)
     s->entity = calloc((size_t)scenery->states, sizeof *s->entity);
     s->snapshot.entity = calloc((size_t)scenery->states, sizeof *s->snapshot.entity);
     s->node = calloc((size_t)nodes + 1, sizeof *s->node);
-    if (!s->entity || !s->snapshot.entity || !s->node) status = STATUS_NO_MEMORY;
+    s->place = calloc(times_kept, sizeof *s->place);
+    if (!s->entity || !s->snapshot.entity || !s->node || !s->place) status = STATUS_NO_MEMORY;
     s->snapshot.node = s->node;
     for (int k = 0, first = 0; k < scenery->states && status == STATUS_OK; k++) {
         place_entity(s, k, first);
@@ -203,7 +216,7 @@ void scenery_states_close(SceneryStates *s)
     heat_patches_destroy(&s->patches);
     tracer_destroy(s->tracer);
     for (int m = 0; s->materials.part && m < s->materials.model_count; m++) free(s->materials.part[m]);
-    free(s->materials.part), free(s->node), free(s->entity), free(s->snapshot.entity);
+    free(s->materials.part), free(s->node), free(s->entity), free(s->snapshot.entity), free(s->place);
     *s = (SceneryStates){0};
 }
 

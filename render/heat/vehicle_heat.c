@@ -124,7 +124,7 @@ static Status check_neighbours(VehicleHeat *h, int at)
     PlaceHeat     place;
     bool          changed;
     int           left_out;
-    if ((h->count < 2 && !s->near) || t_s - s->checked_s < 1) return STATUS_OK;
+    if (h->config.alone || (h->count < 2 && !s->near) || t_s - s->checked_s < 1) return STATUS_OK;
     s->checked_s = t_s;
     need_bodies(h);
     Status status = h->config.place(&place, h->config.user, h->config.unix_s + t_s, h->body[at].p_enu, false);

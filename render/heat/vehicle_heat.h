@@ -77,6 +77,7 @@ typedef struct VehicleHeatConfig {
     double        unix_s;               /* of exercise time 0 */
     int           past_parts;           /* of each span of a past; above 1: with error control too; 0: 1 */
     int           capacity;             /* entities at most, by id; others stay as warm as the air, and are counted */
+    bool          alone;                /* all are too far apart to be neighbours: none are looked for */
     VehiclePlace *place;
     const void   *user;
 } VehicleHeatConfig;

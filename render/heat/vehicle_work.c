@@ -88,7 +88,7 @@ static Status find_place(VehicleMoment *m, VehicleHeat *h, const VehicleState *s
 {
     NearWork work = {0};
     Status   status = find_ground(m, h, h->config.unix_s + t_s, present);
-    if (status == STATUS_OK && h->near.count > 1)
+    if (status == STATUS_OK && h->near.count > 1 && !h->config.alone)
         status = vehicle_near_moment(&work, m, &h->near, vehicle_state_find(h->state, h->count, s->id), t_s, !present,
                                      lately, h->arena);
     if (status != STATUS_OK) return status;

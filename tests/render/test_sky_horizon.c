@@ -105,6 +105,30 @@ static void away_from_it_the_sky_is_open(void **state)
     CHECK(sky_horizons_bytes(stage.horizons) > 10000 && sky_horizons_bytes(stage.horizons) < 4u << 20);
 }
 
+/* Cells are filled eight at a time where none of them is covered: which eight follows from where the grid begins. With
+ * another wall 300 m off it begins 150 cells, and not a multiple of eight, farther west. */
+static void wherever_the_grid_begins(void **state)
+{
+    (void)state;
+    SceneryObject  two[2] = {stage.object, stage.object};
+    const Scenery  scenery = {.models = 1, .objects = 2, .model = &stage.model, .object = two};
+    SceneryTracer *tracer;
+    SkyHorizons   *other;
+    int            hidden = 0;
+    two[1].p_enu[0] = -300;
+    assert_int_equal(scenery_tracer_create(&tracer, &scenery, "avx2", NULL), STATUS_OK);
+    assert_int_equal(sky_horizons_create(&other, tracer, &stage.ground, &stage.materials, NULL), STATUS_OK);
+    for (int i = 0; i < 4000; i++) {
+        const double p[3] = {-70 + 0.035 * i, -240 + 0.17 * (i * 37 % 2800), stage.object.p_enu[2]}, up[3] = {0, 0, 1};
+        const double one = sky_horizon_share(stage.horizons, p, up), both = sky_horizon_share(other, p, up);
+        CHECK_NEAR(both, one, 1e-5);
+        hidden += one < 0.95;
+    }
+    CHECK(hidden > 500);
+    sky_horizons_destroy(other);
+    scenery_tracer_destroy(tracer);
+}
+
 /* A plane of ground receives what is left of the sky, and of the wall what a wall shines. */
 static void light_on_ground(void **state)
 {
@@ -134,6 +158,7 @@ int main(void)
         cmocka_unit_test(beside_a_wall),
         cmocka_unit_test(higher_up),
         cmocka_unit_test(away_from_it_the_sky_is_open),
+        cmocka_unit_test(wherever_the_grid_begins),
         cmocka_unit_test(light_on_ground),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);

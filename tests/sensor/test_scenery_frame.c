@@ -190,6 +190,49 @@ static void nothing_is_nothing(void **state)
     CHECK(after.picture.instance == NULL && after.picture.counters.visibility.rays_scenery == 0);
 }
 
+/* Red and 8-12 um: root mean squared error of one picture beside another, % of the mean. */
+static double error_percent(const Picture *got, const Picture *want, int plane)
+{
+    const float *a = picture_plane(got, plane), *b = picture_plane(want, plane);
+    const int    count = got->width * got->height;
+    double       square = 0, mean = 0;
+    for (int i = 0; i < count; i++) {
+        square += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]) / count;
+        mean += (double)b[i] / count;
+    }
+    return 100 * sqrt(square) / mean;
+}
+
+/* Pixels of 0.65 m: houses are a texture, and are sampled again near targets alone. Against 36 rays in every pixel. */
+static void far_houses_are_a_texture(void **state)
+{
+    (void)state;
+    TrialFrame    all = frame_of(&stage.town, stage.two, stage.arena[0], 40);
+    TrialFrame    texture = frame_of(&stage.town, stage.two, stage.arena[1], 40);
+    RenderRequest request = all.request;
+    Picture       whole, fine;
+    request.scenery_px_m = 100;
+    assert_int_equal(render(&whole, &stage.town.world, &all.snapshot, &request, &all.air, stage.two, stage.arena[0]),
+                     STATUS_OK);
+    request.samples = 6, request.edge_samples = 0;
+    assert_int_equal(render(&fine, &stage.town.world, &all.snapshot, &request, &all.air, stage.two, stage.arena[0]),
+                     STATUS_OK);
+    const Picture *few = &texture.picture;
+    const uint64_t edges = few->counters.rays_edges, edges_all = whole.counters.rays_edges;
+    const double   red[2] = {error_percent(few, &fine, 0), error_percent(&whole, &fine, 0)};
+    const double   lwir[2] = {error_percent(few, &fine, picture_lwir), error_percent(&whole, &fine, picture_lwir)};
+    int            targets = 0;
+    for (int i = 0; i < few->width * few->height; i++) {
+        if (!few->entity[i]) continue;
+        targets++;
+        CHECK(few->lwir[i] == whole.lwir[i] && few->optical[0][i] == whole.optical[0][i]);
+    }
+    print_message("%llu rays at edges of %llu; red %.1f %% off (%.1f), 8-12 um %.2f %% (%.2f); %d pixels of targets\n",
+                  (unsigned long long)edges, (unsigned long long)edges_all, red[0], red[1], lwir[0], lwir[1], targets);
+    CHECK(targets > 30 && (double)edges < 0.8 * (double)edges_all);
+    CHECK(red[1] < red[0] && red[0] < 25 && lwir[0] < 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -198,6 +241,7 @@ int main(void)
         cmocka_unit_test(shadows_fall_on_ground_and_targets),
         cmocka_unit_test(any_number_of_threads),
         cmocka_unit_test(nothing_is_nothing),
+        cmocka_unit_test(far_houses_are_a_texture),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

@@ -16,6 +16,7 @@ struct Tracer {
     int            count;
     ModelMeshes   *model;
     const Catalog *catalog; /* NULL: the models were given, and are built */
+    bool           thin;    /* thin pieces are listed */
 };
 
 /* ---- building ----------------------------------------------------------------------------- */
@@ -198,7 +199,7 @@ static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *mesh
     }
     for (int t = 0; t < triangle_count; t++) measure_facet(&mesh->facet[t], model, mesh->triangle[t]);
     if (list_corners(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
-    if (parts_list_thin(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
+    if (tracer->thin && parts_list_thin(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
     bound_mesh(mesh);
     return commit_mesh(mesh, tracer);
 }
@@ -250,7 +251,7 @@ Status tracer_need(Tracer *tracer, int model)
     return status;
 }
 
-Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa)
+static Status create(Tracer **out, const Model *const *models, int count, const char *isa, bool thin)
 {
     char       config[128] = "threads=1,start_threads=0,set_affinity=0";
     Status     status = STATUS_OK;
@@ -265,6 +266,7 @@ Status tracer_create_models(Tracer **out, const Model *const *models, int count,
     }
     Tracer *tracer = calloc(1, sizeof *tracer);
     if (!tracer) return STATUS_NO_MEMORY;
+    tracer->thin = thin;
     tracer->device = rtcNewDevice(config);
     if (!tracer->device) {
         status = status_of_error((int)rtcGetDeviceError(NULL));
@@ -291,6 +293,11 @@ fail:
     return status;
 }
 
+Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa)
+{
+    return create(out, models, count, isa, false);
+}
+
 int64_t tracer_embree(const Tracer *tracer)
 {
     return (int64_t)rtcGetDeviceProperty(tracer->device, RTC_DEVICE_PROPERTY_VERSION);
@@ -302,7 +309,7 @@ Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa)
     const Model **models = calloc((size_t)count + 1, sizeof *models);
     if (!models) return STATUS_NO_MEMORY;
     for (int m = 0; m < count; m++) models[m] = catalog_is_built(catalog, m) ? catalog_model(catalog, m) : NULL;
-    const Status status = tracer_create_models(out, models, count, isa);
+    const Status status = create(out, models, count, isa, true);
     if (status == STATUS_OK) (*out)->catalog = catalog;
     free(models);
     return status;

@@ -18,7 +18,8 @@ typedef struct Tracer Tracer;
 Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa);
 void   tracer_destroy(Tracer *tracer);
 
-/* As tracer_create, with the models given directly; they must outlive the tracer. NULL among them: not drawable. */
+/* As tracer_create, with the models given directly; they must outlive the tracer. NULL among them: not drawable. Their
+ * thin pieces (parts_node_thin), which only targets are asked for, are not listed. */
 Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa);
 int    tracer_model_count(const Tracer *tracer);
 /* Version of the Embree that is loaded: 31305 is 3.13.5. */

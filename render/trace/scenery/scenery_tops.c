@@ -17,23 +17,30 @@ static int last_cell(double x_m, double x0_m, double cell_m, int n)
     return (int)clamp(floor((x_m - x0_m) / cell_m), -1, n - 1);
 }
 
+/* Not fmin and fmax, which compile to calls. */
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+static inline double larger(double a, double b) { return a > b ? a : b; }
+
+/* Cells whose middles may lie below something between two corners, along x and y. */
+typedef struct Cells {
+    int first[2], last[2];
+} Cells;
+
+static bool cells_along(Cells *out, const Grid *g, int c, double low_m, double high_m)
+{
+    out->first[c] = first_cell(low_m, c ? g->y0_m : g->x0_m, g->cell_m, c ? g->ny : g->nx);
+    out->last[c] = last_cell(high_m, c ? g->y0_m : g->x0_m, g->cell_m, c ? g->ny : g->nx);
+    return out->first[c] <= out->last[c];
+}
+
 /* Triangles that stand upright cover no cell. */
-static void raise_triangle(const Grid *g, const double p[3][3])
+static void raise_triangle(const Grid *g, const Cells *in, const double p[3][3])
 {
     const double abx = p[1][0] - p[0][0], aby = p[1][1] - p[0][1], acx = p[2][0] - p[0][0], acy = p[2][1] - p[0][1];
     const double det = abx * acy - aby * acx;
-    double       low[2], high[2];
     if (!(fabs(det) > 1e-9)) return;
-    for (int c = 0; c < 2; c++) {
-        low[c] = fmin(p[0][c], fmin(p[1][c], p[2][c]));
-        high[c] = fmax(p[0][c], fmax(p[1][c], p[2][c]));
-    }
-    const int left = first_cell(low[0], g->x0_m, g->cell_m, g->nx),
-              right = last_cell(high[0], g->x0_m, g->cell_m, g->nx);
-    const int below = first_cell(low[1], g->y0_m, g->cell_m, g->ny),
-              above = last_cell(high[1], g->y0_m, g->cell_m, g->ny);
-    for (int j = below; j <= above; j++)
-        for (int i = left; i <= right; i++) {
+    for (int j = in->first[1]; j <= in->last[1]; j++)
+        for (int i = in->first[0]; i <= in->last[0]; i++) {
             const double x = g->x0_m + i * g->cell_m - p[0][0], y = g->y0_m + j * g->cell_m - p[0][1];
             const double u = (x * acy - y * acx) / det, v = (abx * y - aby * x) / det;
             float       *z = &g->z_m[(size_t)j * (size_t)g->nx + (size_t)i];
@@ -43,21 +50,34 @@ static void raise_triangle(const Grid *g, const double p[3][3])
         }
 }
 
+/* Most triangles lie between the cells' middles along x or y: one coordinate of their corners at a time. */
+static void raise_node(const Grid *g, const PosedNode *node)
+{
+    const double *r = node->r_enu_from_node;
+    const double(*corner)[3];
+    for (int k = 0; (corner = parts_node_triangle(node, k)); k++) {
+        double p[3][3];
+        Cells  in;
+        bool   some = true;
+        for (int c = 0; c < 3 && some; c++) {
+            for (int i = 0; i < 3; i++) p[i][c] = v3_dot(r + 3 * c, corner[i]) + node->p_enu[c];
+            if (c < 2)
+                some = cells_along(&in, g, c, smaller(p[0][c], smaller(p[1][c], p[2][c])),
+                                   larger(p[0][c], larger(p[1][c], p[2][c])));
+        }
+        if (some) raise_triangle(g, &in, (const double(*)[3])p);
+    }
+}
+
 void scenery_tracer_tops(float *z_m, const SceneryTracer *t, int nx, int ny, double x0_m, double y0_m, double cell_m)
 {
     const Grid grid = {z_m, nx, ny, x0_m, y0_m, cell_m};
     for (int k = 0; k < t->scenery->objects; k++) {
         const PosedEntity *e = &t->posed[k];
-        for (int n = 0; e->model >= 0 && n < e->node_count; n++) {
-            const double(*corner)[3];
-            for (int i = 0; (corner = parts_node_triangle(&e->node[n], i)); i++) {
-                double p[3][3];
-                for (int c = 0; c < 3; c++) {
-                    m3_mul_v3(p[c], e->node[n].r_enu_from_node, corner[c]);
-                    v3_add(p[c], p[c], e->node[n].p_enu);
-                }
-                raise_triangle(&grid, (const double(*)[3])p);
-            }
-        }
+        double             low[3], high[3];
+        Cells              in;
+        if (!scenery_box(e, low, high)) continue; /* and far less than its margin is rounded */
+        if (!cells_along(&in, &grid, 0, low[0], high[0]) || !cells_along(&in, &grid, 1, low[1], high[1])) continue;
+        for (int n = 0; n < e->node_count; n++) raise_node(&grid, &e->node[n]);
     }
 }

@@ -71,6 +71,7 @@ static bool pyramid_of(Planes *out, double axis[3], const Bundle *b, const doubl
     double              u[3], v[3], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     double              far_m = 0;
     bool                one_point = true;
+    axis[0] = axis[1] = axis[2] = 0;
     for (int i = 0; i < b->count; i++)
         for (int c = 0; c < 3; c++) one_point &= b->o[c][i] == eye[c], axis[c] += b->d[c][i];
     if (!one_point || !v3_normalize(axis, axis)) return false;

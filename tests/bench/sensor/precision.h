@@ -42,5 +42,6 @@ Status precision_plants(Bench *bench);
 Status precision_radar_seeker(Bench *bench);
 Status precision_coarse(Bench *bench);
 Status precision_sampling(Bench *bench);
+Status precision_scenery(Bench *bench);
 
 #endif

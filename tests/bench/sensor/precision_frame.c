@@ -320,6 +320,7 @@ Status bench_precision(Bench *bench)
     precision_close(&p);
     if (status == STATUS_OK) status = precision_plants(bench);
     if (status == STATUS_OK) status = precision_sampling(bench);
+    if (status == STATUS_OK) status = precision_scenery(bench);
     if (status == STATUS_OK) status = precision_detectors(bench);
     if (status == STATUS_OK) status = precision_radar_seeker(bench);
     if (status == STATUS_OK) status = precision_coarse(bench);

@@ -1,0 +1,282 @@
+/* render/light/sky_horizon_make.c: makes the horizons of buildings on their grid. */
+#include "render/light/sky_horizon_private.h"
+
+#include "pitviper_simd.h"
+
+#include <stdlib.h>
+
+enum { sectors = sky_horizon_sectors, most_heights = 16 << 20, most_steps = 32 };
+static const double reach_m = 80, finest_m = 2;
+static const float  no_top_m = -1e9f;
+
+typedef struct Step {
+    int   x, y;
+    float per_m; /* 1 / distance */
+} Step;
+
+typedef struct Making {
+    SkyHorizons     *h;
+    const Elevation *elevation;
+    float           *top_m; /* [ny][nx] */
+    int              nx, ny;
+    int             *tile;          /* [tiles]: where each lies */
+    int              steps, margin; /* margin: cells that the farthest step goes along x or y */
+    Step             step[2 * sectors][most_steps];
+} Making;
+
+static bool is_building(const Scenery *s, int k) { return s->object[k].kind == SCENERY_BUILDINGS; }
+
+/* What buildings cover, with the reach about it; false: there are none. */
+static bool bounds_of(double low[2], double high[2], const SceneryTracer *tracer)
+{
+    const Scenery *s = scenery_tracer_of(tracer);
+    bool           any = false;
+    for (int c = 0; c < 2; c++) low[c] = INFINITY, high[c] = -INFINITY;
+    for (int k = 0; k < s->objects; k++) {
+        double box[2][3];
+        if (!is_building(s, k) || !scenery_tracer_box(tracer, k, box[0], box[1])) continue;
+        any = true;
+        for (int c = 0; c < 2; c++)
+            low[c] = fmin(low[c], box[0][c] - reach_m), high[c] = fmax(high[c], box[1][c] + reach_m);
+    }
+    return any;
+}
+
+/* Tiles within reach of a building; returns their number. */
+static int mark_tiles(SkyHorizons *h, const SceneryTracer *tracer)
+{
+    const Scenery *s = scenery_tracer_of(tracer);
+    const double   tile_m = horizon_tile_side * h->cell_m;
+    int            count = 0;
+    for (int t = 0; t < h->tiles_x * h->tiles_y; t++) h->tile_of[t] = -1;
+    for (int k = 0; k < s->objects; k++) {
+        double box[2][3];
+        if (!is_building(s, k) || !scenery_tracer_box(tracer, k, box[0], box[1])) continue;
+        const int left = (int)clamp((box[0][0] - reach_m - h->x0_m) / tile_m, 0, h->tiles_x - 1);
+        const int right = (int)clamp((box[1][0] + reach_m - h->x0_m) / tile_m, 0, h->tiles_x - 1);
+        const int below = (int)clamp((box[0][1] - reach_m - h->y0_m) / tile_m, 0, h->tiles_y - 1);
+        const int above = (int)clamp((box[1][1] + reach_m - h->y0_m) / tile_m, 0, h->tiles_y - 1);
+        for (int j = below; j <= above; j++)
+            for (int i = left; i <= right; i++)
+                if (h->tile_of[j * h->tiles_x + i] < 0) h->tile_of[j * h->tiles_x + i] = count++;
+    }
+    return count;
+}
+
+static float top_at(const Making *m, int i, int j)
+{
+    return i < 0 || j < 0 || i >= m->nx || j >= m->ny ? no_top_m : m->top_m[(size_t)j * (size_t)m->nx + (size_t)i];
+}
+
+/* The cell itself, or the nearest that no building covers: the ground there is what is seen. */
+static void uncovered(int at[2], const Making *m, int i, int j)
+{
+    at[0] = i, at[1] = j;
+    for (int ring = 0; ring < 8; ring++) {
+        int best = 1 << 20;
+        for (int y = -ring; y <= ring; y++)
+            for (int x = -ring; x <= ring; x++) {
+                if (top_at(m, i + x, j + y) > no_top_m || x * x + y * y >= best) continue;
+                best = x * x + y * y, at[0] = i + x, at[1] = j + y;
+            }
+        if (best < 1 << 20) return;
+    }
+}
+
+/* Two directions a sector, each in growing steps. */
+static void list_ways(Making *m)
+{
+    const double cell_m = m->h->cell_m;
+    for (int k = 0; k < 2 * sectors; k++) {
+        const double azimuth = 2 * pi_rad * (0.5 * k - 0.25) / sectors;
+        double       before = 0;
+        m->steps = 0;
+        for (double way = 1; way * cell_m <= reach_m && m->steps < most_steps; way += way < 4 ? 1 : 0.25 * way) {
+            Step *to = &m->step[k][m->steps++];
+            to->x = (int)lround(way * sin(azimuth)), to->y = (int)lround(way * cos(azimuth));
+            to->per_m = (float)(1 / (0.5 * (before + way) * cell_m)); /* its side lies between the two */
+            before = way;
+            m->margin = abs(to->x) > m->margin ? abs(to->x) : m->margin;
+            m->margin = abs(to->y) > m->margin ? abs(to->y) : m->margin;
+        }
+    }
+}
+
+static float ground_of(const Making *m, int i, int j)
+{
+    const double cell_m = m->h->cell_m;
+    return (float)elevation_height(m->elevation, m->h->x0_m + i * cell_m, m->h->y0_m + j * cell_m, NULL);
+}
+
+static void fill_cell(HorizonCell *out, const Making *m, int i, int j)
+{
+    int at[2];
+    *out = (HorizonCell){.ground_m = ground_of(m, i, j)};
+    uncovered(at, m, i, j);
+    for (int s = 0; s < sectors; s++) {
+        float sum = 0, height_m = 0;
+        for (int k = 2 * s; k < 2 * s + 2; k++) {
+            float tangent = 0;
+            for (int n = 0; n < m->steps; n++) {
+                const Step *step = &m->step[k][n];
+                const float rise_m = top_at(m, at[0] + step->x, at[1] + step->y) - out->ground_m;
+                if (!(rise_m * step->per_m > tangent)) continue;
+                tangent = rise_m * step->per_m;
+                height_m = rise_m > height_m ? rise_m : height_m;
+            }
+            sum += 0.5f * tangent / (1 + tangent);
+        }
+        out->slope[s] = (uint8_t)(255 * sum + 0.5f);
+        out->height[s] = (uint8_t)clamp((double)height_m / horizon_height_step_m + 0.5, 1, 255);
+    }
+}
+
+/* Whether eight cells from here on are uncovered, and all that they look at is on the grid. */
+static bool are_open(const Making *m, int i, int j)
+{
+    if (i < m->margin || j < m->margin || i + 8 + m->margin > m->nx || j + m->margin >= m->ny) return false;
+    const F32x8 top = f32x8_load(m->top_m + (size_t)j * (size_t)m->nx + (size_t)i);
+    return f32x8_bits(f32x8_greater(top, f32x8_set((double)no_top_m))) == 0;
+}
+
+/* Eight cells side by side that are open: fill_cell, to the same bits. */
+static void fill_eight(HorizonCell *out, const Making *m, int i, int j)
+{
+    const float *here = m->top_m + (size_t)j * (size_t)m->nx + (size_t)i;
+    const F32x8  one = f32x8_set(1), half = f32x8_set(0.5), none = f32x8_set(0);
+    float        ground_m[8], slope[8], height_m[8];
+    for (int c = 0; c < 8; c++) ground_m[c] = ground_of(m, i + c, j);
+    const F32x8 ground = f32x8_load(ground_m);
+    for (int c = 0; c < 8; c++) out[c] = (HorizonCell){.ground_m = ground_m[c]};
+    for (int s = 0; s < sectors; s++) {
+        F32x8 sum = none, high = none;
+        for (int k = 2 * s; k < 2 * s + 2; k++) {
+            F32x8 tangent = none;
+            for (int n = 0; n < m->steps; n++) {
+                const Step *step = &m->step[k][n];
+                const F32x8 rise = f32x8_load(here + step->y * m->nx + step->x) - ground;
+                const F32x8 slopes = rise * _mm256_set1_ps(step->per_m), more = f32x8_greater(slopes, tangent);
+                tangent = f32x8_select(more, slopes, tangent);
+                high = f32x8_select(f32x8_and(more, f32x8_greater(rise, high)), rise, high);
+            }
+            sum = sum + half * tangent / (one + tangent);
+        }
+        f32x8_store(slope, sum);
+        f32x8_store(height_m, high);
+        for (int c = 0; c < 8; c++) {
+            out[c].slope[s] = (uint8_t)(255 * slope[c] + 0.5f);
+            out[c].height[s] = (uint8_t)clamp((double)height_m[c] / horizon_height_step_m + 0.5, 1, 255);
+        }
+    }
+}
+
+static void fill_tile(void *user, int worker, int task)
+{
+    const Making *m = user;
+    const int     i0 = m->tile[task] % m->h->tiles_x * horizon_tile_side,
+              j0 = m->tile[task] / m->h->tiles_x * horizon_tile_side;
+    (void)worker;
+    for (int k = 0; k < horizon_tile_cells; k += 8) {
+        HorizonCell *out = &m->h->cell[(size_t)task * horizon_tile_cells + (size_t)k];
+        const int    i = i0 + k % horizon_tile_side, j = j0 + k / horizon_tile_side;
+        if (are_open(m, i, j)) fill_eight(out, m, i, j);
+        else
+            for (int c = 0; c < 8; c++) fill_cell(out + c, m, i + c, j);
+    }
+}
+
+/* Reflectance of walls, by their area. */
+static void mean_wall(SkyHorizons *h, const Scenery *s, const Materials *materials)
+{
+    double area = 0;
+    for (int m = 0; m < s->models; m++) {
+        const Model *model = &s->model[m];
+        for (int p = 0; p < model->part_count; p++) {
+            const ModelPart *part = &model->part[p];
+            const int        row = materials_find(materials, part->material);
+            double           upright = 0;
+            for (int t = part->first_triangle; t < part->first_triangle + part->triangle_count; t++) {
+                const uint32_t *v = model->triangle[t];
+                double          ab[3], ac[3], n[3];
+                v3_sub(ab, model->vertex[v[1]], model->vertex[v[0]]);
+                v3_sub(ac, model->vertex[v[2]], model->vertex[v[0]]);
+                v3_cross(n, ab, ac);
+                upright += fabs(n[2]) < 0.5 * v3_length(n) ? v3_length(n) : 0;
+            }
+            area += row < 0 ? 0 : upright;
+            for (int c = 0; c < optical_channel_count && row >= 0; c++)
+                h->wall_rho[c] += upright * (double)materials->material[row].rho[c];
+        }
+    }
+    for (int c = 0; c < optical_channel_count && area > 0; c++) h->wall_rho[c] /= area;
+}
+
+static Status fill(SkyHorizons *h, const SceneryTracer *tracer, const Elevation *elevation, Pool *pool)
+{
+    Making m = {
+        .h = h, .elevation = elevation, .nx = h->tiles_x * horizon_tile_side, .ny = h->tiles_y * horizon_tile_side};
+    const size_t heights = (size_t)m.nx * (size_t)m.ny;
+    Status       status = STATUS_OK;
+    m.top_m = malloc(heights * sizeof *m.top_m);
+    m.tile = malloc(((size_t)h->tiles + 1) * sizeof *m.tile);
+    h->cell = malloc(((size_t)h->tiles * horizon_tile_cells + 1) * sizeof *h->cell);
+    if (!m.top_m || !m.tile || !h->cell) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        list_ways(&m);
+        for (size_t k = 0; k < heights; k++) m.top_m[k] = no_top_m;
+        scenery_tracer_tops(m.top_m, tracer, m.nx, m.ny, h->x0_m, h->y0_m, h->cell_m);
+        for (int t = 0; t < h->tiles_x * h->tiles_y; t++)
+            if (h->tile_of[t] >= 0) m.tile[h->tile_of[t]] = t;
+        if (pool) pool_run(pool, h->tiles, fill_tile, &m);
+        else
+            for (int t = 0; t < h->tiles; t++) fill_tile(&m, 0, t);
+    }
+    free(m.top_m);
+    free(m.tile);
+    return status;
+}
+
+Status sky_horizons_create(SkyHorizons **out, const SceneryTracer *tracer, const Elevation *elevation,
+                           const Materials *materials, Pool *pool)
+{
+    double low[2], high[2];
+    Status status = STATUS_OK;
+    *out = NULL;
+    if (!bounds_of(low, high, tracer)) return STATUS_OK;
+    SkyHorizons *h = calloc(1, sizeof *h);
+    if (!h) return STATUS_NO_MEMORY;
+    h->x0_m = low[0], h->y0_m = low[1];
+    for (h->cell_m = finest_m;; h->cell_m *= 2) { /* no more heights, and no more cells, than there may be */
+        const double tile_m = horizon_tile_side * h->cell_m, wide = (high[0] - low[0]) / tile_m,
+                     deep = (high[1] - low[1]) / tile_m;
+        if (!((wide + 1) * (deep + 1) * horizon_tile_cells <= most_heights)) continue;
+        h->tiles_x = (int)wide + 1, h->tiles_y = (int)deep + 1;
+        free(h->tile_of);
+        h->tile_of = malloc((size_t)h->tiles_x * (size_t)h->tiles_y * sizeof *h->tile_of);
+        if (!h->tile_of) break;
+        h->tiles = mark_tiles(h, tracer);
+        if ((int64_t)h->tiles * horizon_tile_cells <= sky_horizon_most_cells) break;
+    }
+    status = h->tile_of ? fill(h, tracer, elevation, pool) : STATUS_NO_MEMORY;
+    if (status != STATUS_OK) {
+        sky_horizons_destroy(h);
+        return status;
+    }
+    mean_wall(h, scenery_tracer_of(tracer), materials);
+    *out = h;
+    return STATUS_OK;
+}
+
+void sky_horizons_destroy(SkyHorizons *h)
+{
+    if (!h) return;
+    free(h->tile_of);
+    free(h->cell);
+    free(h);
+}
+
+size_t sky_horizons_bytes(const SkyHorizons *h)
+{
+    return (size_t)h->tiles * horizon_tile_cells * sizeof *h->cell +
+           (size_t)h->tiles_x * (size_t)h->tiles_y * sizeof(int);
+}
