@@ -60,8 +60,19 @@ typedef struct SceneryMover {
     double speed_mps, phase_m;
 } SceneryMover;
 
+/* What lights by night (entities/scenery/scenery_lamps.h). */
+typedef enum SceneryLampKind { LAMP_WINDOW, LAMP_STREET, LAMP_VEHICLE, LAMP_KINDS } SceneryLampKind;
+typedef struct SceneryLamp {
+    uint8_t kind;                /* SceneryLampKind */
+    int     object;              /* of Scenery.object */
+    int     facet, facets;       /* of its model: which shine; facet -1: two discs on the front of a vehicle */
+    double  p[3], n[3];          /* middle of what shines, and the way it faces: ENU; of vehicles body axes */
+    float   area_m2, type;       /* type: 0 .. 1, which type of lamp it is */
+    float   draw, bed_h, rise_h; /* of windows: when it is lit */
+} SceneryLamp;
+
 typedef struct Scenery {
-    int            models, objects, states, movers, paths;
+    int            models, objects, states, movers, paths, lamps;
     Model         *model;  /* [models]; immutable */
     SceneryObject *object; /* [objects] */
     SceneryState  *state;
@@ -69,8 +80,9 @@ typedef struct Scenery {
     double (*path_enu)[3]; /* [paths] */
     /* of the parts of buildings: the record each belongs to, model by model: part p of model m is of building
      * part_of[part_first[m] + p] (Building.id); 0: of none */
-    uint64_t *part_of;
-    int      *part_first; /* [models]; -1: its parts are of no building */
+    uint64_t    *part_of;
+    int         *part_first; /* [models]; -1: its parts are of no building */
+    SceneryLamp *lamp;       /* [lamps], by object and facet */
 } Scenery;
 
 void scenery_free(Scenery *scenery); /* accepts zeroes */

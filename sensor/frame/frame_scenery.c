@@ -2,6 +2,7 @@
 #include "sensor/frame/frame_scenery.h"
 
 #include "entities/scenery/scenery_buildings.h"
+#include "entities/scenery/scenery_lamps.h"
 
 double frame_scenery_ground(void *user, double x_m, double y_m)
 {
@@ -31,7 +32,8 @@ Status frame_scenery_make(FrameScenery *s, const SceneryPlan *plan, const Landsc
     if (plan->from == CULTURE_FROM_SEED) status = culture_invent(&s->culture, landscape, &plan->invented);
     if (status == STATUS_OK && s->culture.index)
         status = scenery_add_buildings(&s->scenery, &s->culture, frame_scenery_ground, (void *)landscape);
-    return status == STATUS_OK ? add_clutter(s, landscape) : status;
+    if (status == STATUS_OK) status = add_clutter(s, landscape);
+    return status == STATUS_OK && plan->lamps ? scenery_add_lamps(&s->scenery, plan->clutter_seed) : status;
 }
 
 void frame_scenery_free(FrameScenery *s)
@@ -55,4 +57,5 @@ void frame_scenery_count(SceneryCounts *out, const FrameScenery *s)
         if (o->kind == SCENERY_BUILDINGS) out->cells++;
         else out->clutter++, out->of_class[o->class]++;
     }
+    for (int k = 0; k < s->scenery.lamps; k++) out->lamps[s->scenery.lamp[k].kind]++;
 }

@@ -23,6 +23,7 @@ typedef struct SceneryPlan {
     char          clutter_table[1024]; /* name or path (clutter_table_path); empty: countryside */
     uint64_t      clutter_seed;
     double        south_west_m[2], north_east_m[2]; /* ENU: where clutter stands */
+    bool          lamps;                            /* that are lit by night */
 } SceneryPlan;
 
 typedef struct FrameScenery {
@@ -44,6 +45,7 @@ typedef struct SceneryCounts {
     int cells;                           /* objects that are pieces of ground with all that is built there */
     int buildings, lines, points, trees; /* records of culture */
     int clutter, of_class[CLUTTER_CLASSES];
+    int lamps[LAMP_KINDS];
 } SceneryCounts;
 void frame_scenery_count(SceneryCounts *out, const FrameScenery *scenery);
 

@@ -10,6 +10,7 @@
 #include "render/heat/given_heat.h"
 #include "render/heat/ground_column_private.h"
 #include "render/heat/part_table.h"
+#include "render/light/lamps.h"
 #include "render/materials/materials.h"
 #include "render/scattering/clutter/clutter_table_private.h"
 #include "render/scattering/paths/attenuation.h"
@@ -70,6 +71,11 @@ static Status read_effects(const char *path)
 {
     static EffectTable t;
     return effect_table_open(&t, path);
+}
+static Status read_lamps(const char *path)
+{
+    static LampTypes t;
+    return lamp_types_read(&t, path);
 }
 static Status read_clutter(const char *path)
 {
@@ -192,6 +198,7 @@ static const struct Reader {
     {"construction_layers.csv", read_layers, NULL},
     {"ground_detail.csv", read_detail, NULL},
     {"effects.csv", read_effects, NULL},
+    {"lamps.csv", read_lamps, NULL},
     {"quality.csv", read_quality, NULL},
     {"sensors.csv", read_sensor, NULL},
     {"radars.csv", read_radar, NULL},

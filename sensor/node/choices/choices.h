@@ -56,8 +56,8 @@ int choice_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* Unix time of exercise time 0. Also reports senders whose time stamps are not a clock. */
 Status choice_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config,
                    const LocalFrame *frame);
-/* Reports when optical images of this place will be black: at the beginning or the end of the plan the sun is more than
- * 6 degrees below the horizon (the end of civil twilight). */
+/* Reports when optical images of this place will be black but for lamps: at the beginning or the end of the plan the
+ * sun is more than 6 degrees below the horizon (the end of civil twilight). */
 void choice_report_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan,
                          const LocalFrame *frame);
 /* The world's local frame. It is the exercise's: a grid of cells of choice_cell_m lies about the middle of what is on

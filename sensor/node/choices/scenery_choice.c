@@ -31,7 +31,8 @@ static SceneryPlan plan_of(const Config *config, const WoodsSquare *square)
                                       .centre_m = {square->centre_m[0], square->centre_m[1]},
                                       .half_width_m = square->half_width_m},
                          .clutter = config->terrain.clutter,
-                         .clutter_seed = (uint64_t)config->seed};
+                         .clutter_seed = (uint64_t)config->seed,
+                         .lamps = config->terrain.lamps};
     snprintf(plan.clutter_table, sizeof plan.clutter_table, "%s", config->terrain.clutter_table);
     for (int k = 0; k < 2; k++) {
         plan.south_west_m[k] = square->centre_m[k] - half_m;
@@ -59,6 +60,9 @@ static void report(Choices *choices, const FrameScenery *s, const Config *config
     if (s->plan.clutter > 0)
         choice_add(choices, "clutter: %d things, %d of them driving, within %.1f km (terrain.clutter)", n.clutter,
                    n.driving, 0.5e-3 * (s->plan.north_east_m[0] - s->plan.south_west_m[0]));
+    if (s->scenery.lamps > 0)
+        choice_add(choices, "lamps: %d windows, %d street lamps, %d pairs of headlamps, lit by night (terrain.lamps)",
+                   n.lamps[LAMP_WINDOW], n.lamps[LAMP_STREET], n.lamps[LAMP_VEHICLE]);
 }
 
 Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,

@@ -18,10 +18,11 @@ static const char *const layer_keys[MADE_LAYERS] = {
     [MADE_LOG] = "exercise.port exercise.causal node.site node.application",
     [MADE_SURVEY] = "",
     [MADE_CATALOG] = "models.",
-    [MADE_GROUND] = "seed terrain. -terrain.woods -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter",
-    [MADE_CULTURE] = "seed terrain.buildings terrain.trees terrain.clutter",
+    [MADE_GROUND] =
+        "seed terrain. -terrain.woods -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter -terrain.lamps",
+    [MADE_CULTURE] = "seed terrain.buildings terrain.trees terrain.clutter terrain.lamps",
     [MADE_WOODS] =
-        "seed terrain. -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
+        "seed terrain. -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter -terrain.lamps -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
         "-terrain.woods_low_m -terrain.woods_far_m -terrain.woods_far_mb",
     [MADE_MODELS] = "models. terrain.detail terrain.woods_leaves terrain.woods_level1_px terrain.woods_tables "
                     "terrain.woods_sway terrain.woods_far_m terrain.woods_far_mb",

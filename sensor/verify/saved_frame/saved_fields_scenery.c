@@ -113,3 +113,6 @@ void saved_fields_scenery(Fields *f, SavedFrame *file)
     if (plan->from == CULTURE_FROM_RECORDS) record_lists(f, &file->scenery.culture);
     table_field(f, plan->clutter_table, sizeof plan->clutter_table);
 }
+
+/* A file without this chunk is of a frame whose scenery was dark. */
+void saved_fields_lamps(Fields *f, SavedFrame *file) { field_bool(f, "lamps", &file->scenery.plan.lamps); }
