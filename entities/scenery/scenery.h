@@ -83,6 +83,7 @@ typedef struct Scenery {
     uint64_t    *part_of;
     int         *part_first; /* [models]; -1: its parts are of no building */
     SceneryLamp *lamp;       /* [lamps], by object and facet */
+    bool         smokes;     /* what burns of clutter (entities/scenery/scenery_smoke.h) */
 } Scenery;
 
 void scenery_free(Scenery *scenery); /* accepts zeroes */

@@ -2,6 +2,7 @@
  * channels. */
 #include "render/frame/shade_private.h"
 
+#include "entities/scenery/scenery_smoke.h"
 #include "render/light/optical.h"
 #include "render/light/thermal.h"
 
@@ -55,7 +56,11 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
                              .ground_rho = world->materials.ground_rho,
                              .bands = channels,
                              .hidden = request->hidden_entity};
-    Status           status = smoke_effects_scene(&scene->effects, snapshot, &seen, air, arena);
+    Snapshot         smoking = *snapshot; /* with what burns of scenery */
+    Status           status = STATUS_OK;
+    if (world->scenery)
+        status = scenery_smoke(&smoking, scenery_tracer_of(world->scenery), &world->frame, request->view.p_enu, arena);
+    if (status == STATUS_OK) status = smoke_effects_scene(&scene->effects, &smoking, &seen, air, arena);
     if (status != STATUS_OK) return status;
     int *volume = arena_alloc(arena, (size_t)scene->effects.count + 1, sizeof *volume);
     if (!volume) return STATUS_NO_MEMORY;

@@ -32,6 +32,7 @@ Status frame_scenery_make(FrameScenery *s, const SceneryPlan *plan, const Landsc
     if (plan->from == CULTURE_FROM_SEED) status = culture_invent(&s->culture, landscape, &plan->invented);
     if (status == STATUS_OK && s->culture.index)
         status = scenery_add_buildings(&s->scenery, &s->culture, frame_scenery_ground, (void *)landscape);
+    s->scenery.smokes = plan->smoke;
     if (status == STATUS_OK) status = add_clutter(s, landscape);
     return status == STATUS_OK && plan->lamps ? scenery_add_lamps(&s->scenery, plan->clutter_seed) : status;
 }

@@ -23,7 +23,7 @@ typedef struct SceneryPlan {
     char          clutter_table[1024]; /* name or path (clutter_table_path); empty: countryside */
     uint64_t      clutter_seed;
     double        south_west_m[2], north_east_m[2]; /* ENU: where clutter stands */
-    bool          lamps;                            /* that are lit by night */
+    bool          lamps, smoke;                     /* lamps are lit by night; what burns smokes */
 } SceneryPlan;
 
 typedef struct FrameScenery {

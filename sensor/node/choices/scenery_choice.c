@@ -32,7 +32,8 @@ static SceneryPlan plan_of(const Config *config, const WoodsSquare *square)
                                       .half_width_m = square->half_width_m},
                          .clutter = config->terrain.clutter,
                          .clutter_seed = (uint64_t)config->seed,
-                         .lamps = config->terrain.lamps};
+                         .lamps = config->terrain.lamps,
+                         .smoke = true};
     snprintf(plan.clutter_table, sizeof plan.clutter_table, "%s", config->terrain.clutter_table);
     for (int k = 0; k < 2; k++) {
         plan.south_west_m[k] = square->centre_m[k] - half_m;

@@ -114,5 +114,9 @@ void saved_fields_scenery(Fields *f, SavedFrame *file)
     table_field(f, plan->clutter_table, sizeof plan->clutter_table);
 }
 
-/* A file without this chunk is of a frame whose scenery was dark. */
-void saved_fields_lamps(Fields *f, SavedFrame *file) { field_bool(f, "lamps", &file->scenery.plan.lamps); }
+/* A file without this chunk is of a frame whose scenery had neither. */
+void saved_fields_shows(Fields *f, SavedFrame *file)
+{
+    field_bool(f, "lamps", &file->scenery.plan.lamps);
+    field_bool(f, "smoke of fires", &file->scenery.plan.smoke);
+}

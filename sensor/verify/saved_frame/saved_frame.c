@@ -16,7 +16,10 @@ static bool has_marks(const SavedFrame *file)
 
 static bool has_woods(const SavedFrame *file) { return file->planted; }
 static bool has_scenery(const SavedFrame *file) { return file->built; }
-static bool has_lamps(const SavedFrame *file) { return file->built && file->scenery.plan.lamps; }
+static bool has_shows(const SavedFrame *file)
+{
+    return file->built && (file->scenery.plan.lamps || file->scenery.plan.smoke);
+}
 static bool has_radar(const SavedFrame *file) { return file->measured; }
 static bool has_coarse(const SavedFrame *file) { return file->measured && file->radar.coarse; }
 
@@ -36,7 +39,7 @@ static const struct Chunk {
     {"woods", saved_fields_woods, has_woods},
     {"marks", saved_fields_marks, has_marks},
     {"scenery", saved_fields_scenery, has_scenery},
-    {"lamps", saved_fields_lamps, has_lamps},
+    {"shows", saved_fields_shows, has_shows},
     {"radar", saved_fields_radar, has_radar},
     {"coarse", saved_fields_coarse, has_coarse},
 };
