@@ -71,6 +71,13 @@ typedef struct SceneryLamp {
     float   draw, bed_h, rise_h; /* of windows: when it is lit */
 } SceneryLamp;
 
+/* From t_s of exercise time on an object that stands has this damage, the worst of those up to then. */
+typedef struct SceneryHarm {
+    int     object;
+    double  t_s;
+    uint8_t damage; /* 1 .. 3 */
+} SceneryHarm;
+
 typedef struct Scenery {
     int            models, objects, states, movers, paths, lamps;
     Model         *model;  /* [models]; immutable */
@@ -84,6 +91,8 @@ typedef struct Scenery {
     int         *part_first; /* [models]; -1: its parts are of no building */
     SceneryLamp *lamp;       /* [lamps], by object and facet */
     bool         smokes;     /* what burns of clutter (entities/scenery/scenery_smoke.h) */
+    int          harms;
+    SceneryHarm *harm; /* [harms] */
 } Scenery;
 
 void scenery_free(Scenery *scenery); /* accepts zeroes */
@@ -91,5 +100,8 @@ void scenery_free(Scenery *scenery); /* accepts zeroes */
 /* Moves r and p of an object that drives to where it is at a time; others keep their own. */
 void scenery_pose(double p_enu[3], double r_enu_from_body[9], const Scenery *scenery, const SceneryMover *mover,
                   double t_s);
+
+/* Damage of an object at a time: its own, or what it came to by then. O(harms). */
+int scenery_damage(const Scenery *scenery, int object, double t_s);
 
 #endif

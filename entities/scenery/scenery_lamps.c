@@ -121,6 +121,7 @@ static void built(Lamps *to, int object)
     const int      first = s->part_first ? s->part_first[model] : -1;
     for (int p = 0; p < m->part_count; p++) {
         const uint64_t record = first >= 0 ? s->part_of[first + p] : s->object[object].id;
+        if (m->part[p].damage_hidden >> s->object[object].damage & 1) continue;
         if (m->part[p].role == HEAT_WINDOW) panes(to, object, &m->part[p], record);
         else if (strcmp(m->part[p].name, "lamp") == 0) head(to, object, &m->part[p], record);
     }

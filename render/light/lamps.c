@@ -92,6 +92,13 @@ static Status list_cells(LampLight *light, Arena *arena)
     return STATUS_OK;
 }
 
+/* A house that was hit is dark. */
+static bool is_whole(const Scenery *scenery, const SceneryFrame *frame, int object)
+{
+    const PosedEntity *e = scenery_frame_posed(frame, object);
+    return e->model >= 0 && e->damage <= scenery->object[object].damage;
+}
+
 Status lamp_light_create(LampLight **out, const LampTypes *types, const SceneryFrame *frame, const double sun_d_enu[3],
                          double lat_rad, Arena *arena)
 {
@@ -106,8 +113,8 @@ Status lamp_light_create(LampLight **out, const LampTypes *types, const SceneryF
     if (!light->source_of) return STATUS_NO_MEMORY;
     for (int k = 0; k < scenery->lamps; k++) {
         const SceneryLamp *l = &scenery->lamp[k];
-        const bool         lit = lamp_type_of(types, l) && scenery_lamp_lit(l, sun_d_enu[2], hour) &&
-                         scenery_frame_posed(frame, l->object)->model >= 0;
+        const bool         lit =
+            lamp_type_of(types, l) && scenery_lamp_lit(l, sun_d_enu[2], hour) && is_whole(scenery, frame, l->object);
         light->source_of[k] = lit ? ++light->count : 0;
     }
     if (light->count == 0) return STATUS_OK;

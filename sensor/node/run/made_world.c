@@ -360,7 +360,8 @@ static Status need_culture(MadeWorld *m, const MadeOf *of)
     Key     key = key_of(part, MADE_CULTURE, of->config);
     add_square(&key, of->square);
     add_clutter(&key, part);
-    key.good = key.good && *m->key[MADE_GROUND];
+    key.good = key.good && *m->key[MADE_GROUND] &&
+               (strcmp(part->terrain.buildings, "off") == 0 || choice_harm_hash(key.digest, made_basis_survey(m)));
     if (is_there(key_text, m, MADE_CULTURE, &key)) return STATUS_OK;
     const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, NULL, m->cache, NULL};
     const Status      status = choice_scenery(&m->scenery, &m->said[MADE_CULTURE], &basis, of->square, &m->landscape);

@@ -25,6 +25,8 @@ static const Field scenery_rows[] = {
     {"objects", "", "", "", "squares of ground with buildings and works, and things of clutter", OF_COUNTS(objects)},
     {"models", "", "", "", "meshes that they share", OF_COUNTS(models)},
     {"buildings", "", "", "", "buildings", OF_COUNTS(buildings)},
+    {"damaged", "", "", "", "of these, buildings that come to damage, by Detonations or as an entity's",
+     OF_COUNTS(damaged)},
     {"lines", "", "", "", "walls, fences, power lines, bridges, roads and rivers", OF_COUNTS(lines)},
     {"points", "", "", "", "poles, tanks, masts and other works at a place", OF_COUNTS(points)},
     {"trees", "", "", "", "trees of terrain.trees", OF_COUNTS(trees)},

@@ -18,7 +18,8 @@ static bool has_woods(const SavedFrame *file) { return file->planted; }
 static bool has_scenery(const SavedFrame *file) { return file->built; }
 static bool has_shows(const SavedFrame *file)
 {
-    return file->built && (file->scenery.plan.lamps || file->scenery.plan.smoke);
+    const SceneryPlan *plan = &file->scenery.plan;
+    return file->built && (plan->lamps || plan->smoke || plan->harms > 0);
 }
 static bool has_radar(const SavedFrame *file) { return file->measured; }
 static bool has_coarse(const SavedFrame *file) { return file->measured && file->radar.coarse; }

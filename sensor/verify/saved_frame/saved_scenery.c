@@ -59,6 +59,11 @@ Status saved_scenery_sha256(char out[sha256_text_size], const Scenery *scenery)
     for (int k = 0; k < scenery->states; k++) state_bytes(&s, &scenery->state[k]);
     for (int k = 0; k < scenery->movers; k++) mover_bytes(&s, &scenery->mover[k]);
     for (int k = 0; k < scenery->lamps; k++) lamp_bytes(&s, &scenery->lamp[k]);
+    for (int k = 0; k < scenery->harms; k++) {
+        const SceneryHarm *h = &scenery->harm[k];
+        sink_bytes(&s, (const int32_t[2]){h->object, h->damage}, 2 * sizeof(int32_t));
+        sink_bytes(&s, &h->t_s, sizeof h->t_s);
+    }
     if (scenery->paths > 0) sink_bytes(&s, scenery->path_enu, (size_t)scenery->paths * sizeof *scenery->path_enu);
     if (status == STATUS_OK) status = s.failed ? STATUS_NO_MEMORY : sha256_bytes(out, s.bytes, s.count);
     sink_free(&s);
