@@ -188,7 +188,9 @@ Status scenery_tracer_materials(SceneryTracer *t, const Materials *materials, co
         int *of = row + (size_t)at * model_damage_states;
         first[m] = at;
         status = materials_of_model(undamaged, of, materials, &s->model[m], path);
-        for (int p = 0; p < s->model[m].part_count; p++) of[p * model_damage_states] = undamaged[p];
+        for (int p = 0; p < s->model[m].part_count; p++)
+            for (int k = 0; k < (s->model[m].part[p].damage_hidden ? model_damage_states : 1); k++)
+                of[p * model_damage_states + k] = undamaged[p]; /* parts of a state have its materials */
         at += s->model[m].part_count;
     }
     free(undamaged);
