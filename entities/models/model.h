@@ -71,8 +71,9 @@ typedef struct ModelPart {
     HeatRole role;
     double   thickness_m; /* thickness of its skin; 0: by its role */
     int      first_triangle, triangle_count;
-    /* Effect of damage, by the damage state of the appearance ([0] is not used): hidden (bit
-     * 1 << state), or of another material (empty: the same). Parametric models have none; a sidecar may. */
+    /* Effect of damage, by the damage state of the appearance: hidden (bit 1 << state; 0 only of scenery whose
+     * damage changes), or of another material ([0] is not used) (empty: the same). Parametric models have none; a
+     * sidecar may. */
     uint8_t damage_hidden;
     char    damage_material[model_damage_states][32];
 } ModelPart;

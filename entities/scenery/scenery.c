@@ -15,7 +15,8 @@ void scenery_free(Scenery *scenery)
 {
     for (int k = 0; k < scenery->models; k++) model_destroy(&scenery->model[k]);
     free(scenery->model), free(scenery->object), free(scenery->state), free(scenery->mover);
-    free(scenery->path_enu), free(scenery->part_of), free(scenery->part_first);
+    free(scenery->path_enu), free(scenery->part_of), free(scenery->part_first), free(scenery->lamp),
+        free(scenery->harm);
     *scenery = (Scenery){0};
 }
 
@@ -49,4 +50,14 @@ void scenery_pose(double p_enu[3], double r_enu_from_body[9], const Scenery *sce
                                 r_enu_from_body[3 * r + 2] = down[r];
         return;
     }
+}
+
+int scenery_damage(const Scenery *scenery, int object, double t_s)
+{
+    int damage = scenery->object[object].damage;
+    for (int k = 0; k < scenery->harms; k++) {
+        const SceneryHarm *h = &scenery->harm[k];
+        if (h->object == object && h->t_s <= t_s && h->damage > damage) damage = h->damage;
+    }
+    return damage;
 }

@@ -61,8 +61,26 @@ typedef struct SceneryMover {
     double speed_mps, phase_m;
 } SceneryMover;
 
+/* What lights by night (entities/scenery/scenery_lamps.h). */
+typedef enum SceneryLampKind { LAMP_WINDOW, LAMP_STREET, LAMP_VEHICLE, LAMP_KINDS } SceneryLampKind;
+typedef struct SceneryLamp {
+    uint8_t kind;                /* SceneryLampKind */
+    int     object;              /* of Scenery.object */
+    int     facet, facets;       /* of its model: which shine; facet -1: two discs on the front of a vehicle */
+    double  p[3], n[3];          /* middle of what shines, and the way it faces: ENU; of vehicles body axes */
+    float   area_m2, type;       /* type: 0 .. 1, which type of lamp it is */
+    float   draw, bed_h, rise_h; /* of windows: when it is lit */
+} SceneryLamp;
+
+/* From t_s of exercise time on an object that stands has this damage, the worst of those up to then. */
+typedef struct SceneryHarm {
+    int     object;
+    double  t_s;
+    uint8_t damage; /* 1 .. 3 */
+} SceneryHarm;
+
 typedef struct Scenery {
-    int            models, objects, states, movers, paths;
+    int            models, objects, states, movers, paths, lamps;
     Model         *model;  /* [models]; immutable */
     SceneryObject *object; /* [objects] */
     SceneryState  *state;
@@ -70,8 +88,12 @@ typedef struct Scenery {
     double (*path_enu)[3]; /* [paths] */
     /* of the parts of buildings: the record each belongs to, model by model: part p of model m is of building
      * part_of[part_first[m] + p] (Building.id); 0: of none */
-    uint64_t *part_of;
-    int      *part_first; /* [models]; -1: its parts are of no building */
+    uint64_t    *part_of;
+    int         *part_first; /* [models]; -1: its parts are of no building */
+    SceneryLamp *lamp;       /* [lamps], by object and facet */
+    bool         smokes;     /* what burns of clutter (entities/scenery/scenery_smoke.h) */
+    int          harms;
+    SceneryHarm *harm; /* [harms] */
 } Scenery;
 
 void scenery_free(Scenery *scenery); /* accepts zeroes */
@@ -79,5 +101,8 @@ void scenery_free(Scenery *scenery); /* accepts zeroes */
 /* Moves r and p of an object that drives to where it is at a time; others keep their own. */
 void scenery_pose(double p_enu[3], double r_enu_from_body[9], const Scenery *scenery, const SceneryMover *mover,
                   double t_s);
+
+/* Damage of an object at a time: its own, or what it came to by then. O(harms). */
+int scenery_damage(const Scenery *scenery, int object, double t_s);
 
 #endif

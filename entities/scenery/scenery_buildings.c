@@ -70,7 +70,20 @@ static void box_of(double low[2], double high[2], const Culture *c, int first, i
             low[a] = fmin(low[a], c->corner_m[k][a]), high[a] = fmax(high[a], c->corner_m[k][a]);
 }
 
-static Status list_buildings(Items *items, const Culture *c)
+/* Buildings whose damage changes. */
+typedef struct Harmed {
+    const BuildingHarm *harm;
+    int                 harms;
+} Harmed;
+
+static bool is_harmed(const Harmed *of, uint64_t building)
+{
+    for (int k = 0; k < of->harms; k++)
+        if (of->harm[k].building == building) return true;
+    return false;
+}
+
+static Status list_buildings(Items *items, const Culture *c, const Harmed *harmed)
 {
     Status status = STATUS_OK;
     for (int n = 0; n < c->buildings && status == STATUS_OK; n++) {
@@ -79,7 +92,8 @@ static Status list_buildings(Items *items, const Culture *c)
         box_of(low, high, c, b->first_corner, b->corners);
         const bool fits = high[0] - low[0] < wide_most_m && high[1] - low[1] < wide_most_m;
         if (!fits || !is_of_this_world(low, high, (double)b->base_m, (double)b->ridge_m)) items->left_out++;
-        else status = add_item(items, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), ITEM_BUILDING, n, 0);
+        else if (!is_harmed(harmed, b->id))
+            status = add_item(items, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), ITEM_BUILDING, n, 0);
     }
     return status;
 }
@@ -120,9 +134,9 @@ static Status list_pieces(Items *items, const Culture *c)
     return status;
 }
 
-static Status list_items(Items *items, const Culture *c)
+static Status list_items(Items *items, const Culture *c, const Harmed *harmed)
 {
-    Status status = list_buildings(items, c);
+    Status status = list_buildings(items, c, harmed);
     if (status == STATUS_OK) status = list_points(items, c);
     if (status == STATUS_OK) status = list_pieces(items, c);
     if (items->left_out > 0)
@@ -283,18 +297,88 @@ static Status append(Scenery *s, CellsMade *made)
     return STATUS_OK;
 }
 
-Status scenery_add_buildings(Scenery *scenery, const Culture *culture, SceneryGround *ground_m, void *user)
+/* A building in all states of damage, in the place of its cell. */
+static Status make_harmed(CellsMade *made, const Culture *c, int number, SceneryGround *ground_m, void *user)
 {
-    Items     items = {0};
-    CellsMade made = {0};
-    Status    status = list_items(&items, culture);
+    Building b = c->building[number];
+    double   low[2], high[2];
+    CellMesh cell = {0};
+    box_of(low, high, c, b.first_corner, b.corners);
+    const double middle[2] = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
+    const Item   at = {(int32_t)floor(middle[0] / scenery_cell_m), (int32_t)floor(middle[1] / scenery_cell_m),
+                       ITEM_BUILDING, number, 0};
+    const double origin[3] = {middle[0], middle[1], (double)b.base_m};
+    if (high[0] - low[0] >= wide_most_m || high[1] - low[1] >= wide_most_m ||
+        !is_of_this_world(low, high, (double)b.base_m, (double)b.ridge_m))
+        return STATUS_OK;
+    const int least = b.damage < model_damage_states ? b.damage : model_damage_states - 1;
+    for (int state = least; state < model_damage_states; state++) {
+        const int first = cell.model.part_count;
+        b.damage = (uint8_t)state;
+        building_make(&cell, c, &b, origin, ground_m, user);
+        for (int p = first; p < cell.model.part_count; p++)
+            cell.model.part[p].damage_hidden = (uint8_t)(((1 << model_damage_states) - 1) & ~(1 << state));
+    }
+    const int    before = made->count;
+    const Status status = put_model(made, &cell, &at, origin, 0);
+    if (made->count > before) made->object[before].id = b.id, made->object[before].damage = (uint8_t)least;
+    cell_mesh_free(&cell);
+    return status;
+}
+
+static int number_of(const Culture *c, uint64_t building)
+{
+    for (int n = 0; n < c->buildings; n++)
+        if (c->building[n].id == building) return n;
+    return -1;
+}
+
+static Status make_all_harmed(CellsMade *made, const Culture *c, const Harmed *of, SceneryGround *ground_m, void *user)
+{
+    Status status = STATUS_OK;
+    for (int k = 0; k < of->harms && status == STATUS_OK; k++) {
+        const int number = number_of(c, of->harm[k].building);
+        if (number >= 0 && !is_harmed(&(Harmed){of->harm, k}, of->harm[k].building))
+            status = make_harmed(made, c, number, ground_m, user);
+    }
+    return status;
+}
+
+/* harm by object: those of the building's number are the last. */
+static Status note_harm(Scenery *s, const Harmed *of)
+{
+    SceneryHarm *harm = calloc((size_t)of->harms + 1, sizeof *harm);
+    if (!harm) return STATUS_NO_MEMORY;
+    free(s->harm);
+    s->harm = harm, s->harms = 0;
+    for (int k = 0; k < of->harms; k++)
+        for (int n = 0; n < s->objects; n++)
+            if (s->object[n].kind == SCENERY_BUILDINGS && s->object[n].id == of->harm[k].building)
+                s->harm[s->harms++] = (SceneryHarm){n, of->harm[k].t_s, of->harm[k].damage}, n = s->objects;
+    return STATUS_OK;
+}
+
+Status scenery_add_harmed_buildings(Scenery *scenery, const Culture *culture, const BuildingHarm *harm, int harms,
+                                    SceneryGround *ground_m, void *user)
+{
+    const Harmed harmed = {harm, harms};
+    Items        items = {0};
+    CellsMade    made = {0};
+    Status       status = list_items(&items, culture, &harmed);
     for (int k = 0, next; k < items.count && status == STATUS_OK; k = next) {
         for (next = k + 1; next < items.count; next++)
             if (items.item[next].i != items.item[k].i || items.item[next].j != items.item[k].j) break;
         status = make_cell(&made, culture, items.item + k, next - k, ground_m, user);
     }
+    if (status == STATUS_OK) status = make_all_harmed(&made, culture, &harmed, ground_m, user);
     if (status == STATUS_OK && made.count > 0) status = append(scenery, &made);
+    if (status == STATUS_OK && harms > 0) status = note_harm(scenery, &harmed);
     free_made(&made);
     free(items.item);
     return status;
+}
+
+Status scenery_add_buildings(Scenery *scenery, const Culture *culture, SceneryGround *ground_m, void *user)
+{
+    return scenery_add_harmed_buildings(scenery, culture, NULL, 0, ground_m, user);
 }

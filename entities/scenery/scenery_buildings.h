@@ -28,4 +28,18 @@ typedef double SceneryGround(void *user, double x_m, double y_m);
  * held. */
 Status scenery_add_buildings(Scenery *scenery, const Culture *culture, SceneryGround *ground_m, void *user);
 
+/* What a building comes to. */
+typedef struct BuildingHarm {
+    uint64_t building; /* Building.id */
+    double   t_s;
+    uint8_t  damage; /* 1 .. 3 */
+} BuildingHarm;
+enum { building_harms_most = 256 };
+
+/* The same with buildings whose damage changes: each is an object of its own behind the cells, whose model has the
+ * building in all four states, hidden in all but one (ModelPart.damage_hidden). Scenery.harm says when. harm of
+ * buildings that are not there is left out. */
+Status scenery_add_harmed_buildings(Scenery *scenery, const Culture *culture, const BuildingHarm *harm, int harms,
+                                    SceneryGround *ground_m, void *user);
+
 #endif

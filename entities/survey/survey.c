@@ -5,6 +5,7 @@
 #include "dis/pdu/pdu.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_index.h"
+#include "entities/traces/effect_history.h"
 
 #include <stdlib.h>
 
@@ -104,6 +105,7 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
                           .frozen = appearance >> dis_appearance_frozen_bit & 1,
                           .deactivated = appearance >> dis_appearance_deactivated_bit & 1,
                           .engine = appearance >> dis_appearance_power_plant_bit & 1,
+                          .damage = appearance >> dis_appearance_damage_shift & 3,
                           .paused = b->build[t].held};
     memcpy(point->p_ecef, p_ecef, sizeof point->p_ecef);
     memcpy(point->euler_rad, euler_rad, sizeof point->euler_rad);
@@ -185,6 +187,7 @@ static Status receive_detonation(Building *b, const DisDetonation *pdu, double t
                           .munition = pdu->munition,
                           .event = pdu->event,
                           .result = pdu->result,
+                          .charge_kg = (float)effect_charge_kg(&pdu->descriptor, false),
                           .is_detonation = true};
     memcpy(event.p_ecef, pdu->p_ecef, sizeof event.p_ecef);
     return add_warfare(b, &event);

@@ -15,15 +15,18 @@ typedef struct Shot {
     double      p_burst_ecef[3];
     DisEntityId hit; /* target named by the Detonation; 0:0:0: none */
     uint8_t     result;
+    float       charge_kg; /* of the Detonation's descriptor: effect_charge_kg */
 } Shot;
 
 /* One report of where an entity was: 72 octets, and a long log has millions. */
 typedef struct TrackPoint {
-    double t_s;
-    double p_ecef[3], v_ecef_mps[3];    /* velocity in world axes, whatever the algorithm */
-    float  euler_rad[3];                /* psi, theta, phi as reported: survey_point_rotation */
-    bool   frozen, deactivated, engine; /* engine: its power-plant bit */
-    bool   paused;                      /* a Stop/Freeze names it before its next report, or still holds it */
+    double  t_s;
+    double  p_ecef[3], v_ecef_mps[3]; /* velocity in world axes, whatever the algorithm */
+    float   euler_rad[3];             /* psi, theta, phi as reported: survey_point_rotation */
+    bool    frozen, deactivated;
+    bool    engine : 1; /* its power-plant bit */
+    bool    paused : 1; /* a Stop/Freeze names it before its next report, or still holds it */
+    uint8_t damage;     /* its damage bits: 0 none .. 3 destroyed */
 } TrackPoint;
 
 typedef struct Track {
@@ -85,6 +88,7 @@ typedef struct WarfareEvent {
     DisEventId  event;
     double      p_ecef[3]; /* Detonation */
     uint8_t     result;
+    float       charge_kg;
     bool        is_detonation;
 } WarfareEvent;
 

@@ -126,6 +126,7 @@ static Shot shot_of(const Joining *j, int e)
         memcpy(shot.p_burst_ecef, end->p_ecef, sizeof shot.p_burst_ecef);
         shot.hit = end->target;
         shot.result = end->result;
+        shot.charge_kg = end->charge_kg;
     }
     return shot;
 }

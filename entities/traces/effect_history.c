@@ -311,6 +311,9 @@ static double share_of(int64_t number, double age_s, double full_s, double *toge
     return level == stage && stage < most_halvings ? one * (1 - f) : one * (1 + f);
 }
 
+/* Groups of older kinds keep their numbers when there are more kinds. */
+enum { kinds_of_groups = EFFECT_FLARE_FIRE + 1 };
+
 static void put_source(PuffList *list, const EffectSource *source, double t_s)
 {
     const EffectModel *law = &list->table->law[source->kind];
@@ -323,7 +326,7 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
                           .owner = source->key,
                           .scale = source->scale,
                           .throw_s = 0.6,
-                          .group = (uint32_t)mix(source->key * EFFECT_KIND_COUNT + source->kind)};
+                          .group = (uint32_t)mix(source->key * kinds_of_groups + source->kind)};
     const double  first_s = fmax(source->from_s, t_s - life_s), last_s = fmin(source->to_s, t_s);
     const int64_t first = (int64_t)ceil(first_s / interval_s), last = (int64_t)floor(last_s / interval_s);
 
@@ -385,5 +388,14 @@ size_t effect_history_puffs(EffectPuff *out, size_t capacity, const EffectHistor
     }
     for (uint64_t i = 1; i <= sources; i++)
         put_source(&list, &h->source[(h->sources - i) % effect_source_capacity], t_s);
+    return list.count;
+}
+
+size_t effect_source_puffs(EffectPuff *out, size_t capacity, const EffectTable *table, const EffectSource *source,
+                           double t_s)
+{
+    PuffList list = {out, capacity, 0, table};
+    if (!(fabs(t_s) < effect_latest_s)) return 0;
+    put_source(&list, source, t_s);
     return list.count;
 }

@@ -65,5 +65,8 @@ bool effect_result_is_water(int result);
 /* All visible puffs at t_s, newest first, up to capacity. Returns how many there are, which exceeds capacity when they
  * do not all fit. out may be NULL with capacity 0. */
 size_t effect_history_puffs(EffectPuff *out, size_t capacity, const EffectHistory *history, double t_s);
+/* Likewise those of one source, which is in no history. */
+size_t effect_source_puffs(EffectPuff *out, size_t capacity, const EffectTable *table, const EffectSource *source,
+                           double t_s);
 
 #endif

@@ -9,9 +9,10 @@
 static const double mean_density = 8.0 / 35;
 
 static const char *const kind_names[EFFECT_KIND_COUNT] = {
-    "muzzle_flash", "muzzle_smoke", "launch_flash", "launch_smoke", "burst_flash",     "fireball",    "burst_smoke",
-    "burst_dust",   "sparks",       "flame",        "smoke",        "engine_smoke",    "dust",        "contrail",
-    "motor_plume",  "motor_smoke",  "afterburner",  "exhaust",      "turbine_exhaust", "jet_exhaust", "flare_fire"};
+    "muzzle_flash", "muzzle_smoke",  "launch_flash", "launch_smoke", "burst_flash",     "fireball",    "burst_smoke",
+    "burst_dust",   "sparks",        "flame",        "smoke",        "engine_smoke",    "dust",        "contrail",
+    "motor_plume",  "motor_smoke",   "afterburner",  "exhaust",      "turbine_exhaust", "jet_exhaust", "flare_fire",
+    "wood_smoke",   "smoulder_smoke"};
 
 /* ---- table -------------------------------------------------------------------------------- */
 

@@ -32,6 +32,8 @@ typedef enum EffectKind {
     EFFECT_TURBINE_EXHAUST,
     EFFECT_JET_EXHAUST,
     EFFECT_FLARE_FIRE,
+    EFFECT_WOOD_SMOKE,     /* of open fires of clutter */
+    EFFECT_SMOULDER_SMOKE, /* of heaps that smoulder */
     EFFECT_KIND_COUNT
 } EffectKind;
 

@@ -76,6 +76,7 @@ static void set_light(PixelLight *out, const Worker *w, int b, int i)
         return;
     }
     out->emitted = t->emitted[b][i], out->reflected = t->reflected[b][i], out->sunlit = t->sunlit[b][i];
+    out->lamps = t->lamps[b][i];
     out->reflected_sky = t->sky[b][i], out->reflected_ground = t->ground[b][i];
     out->air_transmittance = air->air_transmittance[i], out->sun_transmittance = air->sun_transmittance[i];
     out->transmittance = b >= AIR_MWIR ? air->transmittance[i] : 0;

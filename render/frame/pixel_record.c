@@ -36,7 +36,8 @@ float pixel_light_sum(const PixelLight *l, AirBand channel, bool met)
         seen = fmaf(l->reflected, l->air_transmittance, l->path);
         seen = fmaf(l->sunlit, l->sun_transmittance, seen);
         if (channel >= AIR_MWIR) seen = fmaf(l->emitted, l->transmittance, seen);
-    } else { /* as optical_beyond, thermal_beyond */
+        if (l->lamps > 0) seen = fmaf(l->lamps, l->air_transmittance, seen); /* shade_lamps.c */
+    } else {                                                                 /* as optical_beyond, thermal_beyond */
         seen = (float)(l->beyond * (double)l->beyond_transmittance + (double)l->path + l->disc);
     }
     return l->smoky ? seen * l->smoke_transmittance + l->smoke : seen;

@@ -16,11 +16,13 @@
 /* Light of a sample in one channel, W/(m2 sr), and shares 0 .. 1.
  *
  *   a surface           path + reflected air_transmittance + sunlit sun_transmittance + emitted transmittance
+ *                       + lamps air_transmittance
  *   what met nothing    beyond beyond_transmittance + path + disc: ground beyond the terrain's edge; in the sky, whose
  *                       radiance the path is, the sun's disc
  *   smoke before it     that times smoke_transmittance + smoke */
 typedef struct PixelLight {
     float  emitted, reflected, sunlit;      /* at the surface; emitted 0 in optical channels */
+    float  lamps;                           /* their own light, and what they throw on it (render/light/lamps.h) */
     float  reflected_sky, reflected_ground; /* of `reflected`, to rounding; the rest: plants, or all surroundings */
     float  transmittance, air_transmittance, sun_transmittance; /* of the path, for the spectrum of each */
     float  path;                                                /* radiance of the path */

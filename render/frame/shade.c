@@ -2,6 +2,7 @@
  * channels. */
 #include "render/frame/shade_private.h"
 
+#include "entities/scenery/scenery_smoke.h"
 #include "render/light/optical.h"
 #include "render/light/thermal.h"
 
@@ -55,7 +56,11 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
                              .ground_rho = world->materials.ground_rho,
                              .bands = channels,
                              .hidden = request->hidden_entity};
-    Status           status = smoke_effects_scene(&scene->effects, snapshot, &seen, air, arena);
+    Snapshot         smoking = *snapshot; /* with what burns of scenery */
+    Status           status = STATUS_OK;
+    if (world->scenery)
+        status = scenery_smoke(&smoking, scenery_tracer_of(world->scenery), &world->frame, request->view.p_enu, arena);
+    if (status == STATUS_OK) status = smoke_effects_scene(&scene->effects, &smoking, &seen, air, arena);
     if (status != STATUS_OK) return status;
     int *volume = arena_alloc(arena, (size_t)scene->effects.count + 1, sizeof *volume);
     if (!volume) return STATUS_NO_MEMORY;
@@ -74,7 +79,8 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
     status = world_scenery_join(posed, world, request->t_s, &eye, arena);
     if (status != STATUS_OK) return status;
     scene->visibility = posed;
-    status = world_need_patches(world, snapshot);
+    status = shade_lamps_open(scene, arena);
+    if (status == STATUS_OK) status = world_need_patches(world, snapshot);
     if (status != STATUS_OK) return status;
     if (request->sky_visibility && request->sky_samples == 0) open_sky_of_scenery(scene);
     status = open_plants(scene, posed, request, pool, arena);
@@ -393,6 +399,8 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
     }
     if (shader->terms) shade_terms_light(shader->terms, scene, s, &block);
     restore_normals(shader, &s->hits);
+    shade_lamps_add(out, scene, s, block.material, (const float(*)[hits_capacity])shader->texture, shader->air,
+                    shader->terms ? shader->terms->lamps : NULL);
     shade_beyond(shader, scene, s, out);
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (out[b]) smoke_apply(out[b], &s->smoke, b, s->hits.count);
@@ -512,7 +520,10 @@ void shade_samples_light_directly(Shader *shader, const ShadeScene *scene, Sampl
         else
             optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, material_of(shader, s), shader->texture[b],
                           sun_of(shader, s), around, mirror, &direct[b], NULL);
-        smoke_apply(out, &s->smoke, b, s->hits.count);
     }
     restore_normals(shader, &s->hits);
+    shade_lamps_add(s->radiance, scene, s, material_of(shader, s), (const float(*)[hits_capacity])shader->texture,
+                    direct, NULL);
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (s->channels >> b & 1) smoke_apply(s->radiance[b], &s->smoke, b, s->hits.count);
 }

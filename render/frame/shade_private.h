@@ -9,6 +9,7 @@
 #include "render/frame/picture.h"
 #include "render/frame/world.h"
 #include "render/light/hemisphere.h"
+#include "render/light/lamps.h"
 #include "render/light/sky_visibility.h"
 #include "render/light/surface_light.h"
 #include "render/light/thermal.h"
@@ -28,6 +29,7 @@ typedef struct ShadeScene {
     FarWoodsFrame     *far;           /* NULL: no woods were left out */
     const SkyHorizons *horizons;      /* NULL: buildings hide no sky */
     SkyHorizonLight    horizon_light; /* with horizons */
+    LampLight         *lamps;         /* NULL: none is lit */
     SkyVisibility     *sky;           /* NULL: sky and ground irradiance follow from the surface tilt alone */
     int                sky_samples;   /* directions of hemisphere sampling a hit; 0: the quick form */
     const int         *all_volumes;   /* 0, 1, 2 ...: all of the effects */
@@ -73,7 +75,7 @@ Status shade_samples_create(Samples *out, int capacity, Arena *arena);
 typedef struct ShadeTerms {
     float  emitted[AIR_BAND_COUNT][hits_capacity], reflected[AIR_BAND_COUNT][hits_capacity];
     float  sunlit[AIR_BAND_COUNT][hits_capacity], sky[AIR_BAND_COUNT][hits_capacity];
-    float  ground[AIR_BAND_COUNT][hits_capacity];
+    float  ground[AIR_BAND_COUNT][hits_capacity], lamps[AIR_BAND_COUNT][hits_capacity];
     double beyond[AIR_BAND_COUNT], disc[AIR_BAND_COUNT][hits_capacity];
     float  air_k[hits_capacity], still_k[hits_capacity], sunlit_k[hits_capacity], detailed_k[hits_capacity];
     /* working memory */
@@ -87,6 +89,14 @@ typedef struct ShadeTerms {
 void shade_terms_light(ShadeTerms *terms, const ShadeScene *scene, const Samples *s, const SurfaceBlock *block);
 void shade_terms_heat(ShadeTerms *terms, const ShadeScene *scene, const Samples *s, const PartTemps *parts,
                       const float *photo, const float *warmth_k);
+
+/* The lamps that are lit, of a scene with visibility and air. */
+Status shade_lamps_open(ShadeScene *scene, Arena *arena);
+/* Adds their light to radiance at the eye, before smoke: out, path: by channel. noted: what they add at the surface
+ * [AIR_BAND_COUNT]; NULL: not wanted. Nothing is done where none is lit. */
+void shade_lamps_add(float *const out[AIR_BAND_COUNT], const ShadeScene *scene, const Samples *s,
+                     const uint16_t *material, const float (*texture)[hits_capacity], const AirPaths *path,
+                     float (*noted)[hits_capacity]);
 
 /* A thread's own working memory. */
 typedef struct Shader {

@@ -61,6 +61,7 @@ void shade_terms_light(ShadeTerms *t, const ShadeScene *scene, const Samples *s,
     memset(t->light.thermal, 0, sizeof t->light.thermal);
     shade(t->ground, &t->light, &of, s->channels);
 
+    memset(t->lamps, 0, sizeof t->lamps);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         t->beyond[b] = b >= AIR_MWIR ? air->light.ground_w_m2_sr[b]
                                      : optical_ground_w_m2(b, air, &scene->world->materials) / pi_rad;

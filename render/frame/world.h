@@ -10,6 +10,7 @@
 #include "render/heat/vehicle_heat.h"
 #include "render/light/canopy.h"
 #include "render/light/far_woods.h"
+#include "render/light/lamps.h"
 #include "render/light/sky_horizon.h"
 #include "render/scattering/radar_image.h"
 #include "render/trace/scenery/scenery_tracer.h"
@@ -30,6 +31,7 @@ typedef struct World {
     Canopy           *canopy;
     FarWoods         *far_woods; /* NULL: every plant stands */
     SceneryTracer    *scenery;   /* NULL after world_open: none */
+    LampTypes         lamps;     /* of scenery that has lamps; empty: they are dark */
     SkyHorizons      *horizons;  /* of its buildings, over a landscape; NULL: none */
     PlanckTable      *planck_mwir, *planck_lwir;
     Atmosphere       *atmosphere; /* NULL after world_open; the caller may open one here; world_close closes it */

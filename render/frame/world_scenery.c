@@ -73,6 +73,8 @@ Status world_scenery(World *world, const Scenery *scenery, const char *isa, Pool
     status = scenery_tracer_materials(tracer, &world->materials, path);
     if (status == STATUS_OK && world->landscape)
         status = sky_horizons_create(&world->horizons, tracer, &world->landscape->elevation, &world->materials, pool);
+    if (status == STATUS_OK && scenery->lamps > 0)
+        status = etc_path(path, sizeof path, "lamps.csv") ? lamp_types_read(&world->lamps, path) : STATUS_BAD_VALUE;
     if (status == STATUS_OK) world->scenery = tracer;
     else scenery_tracer_destroy(tracer);
     return status;

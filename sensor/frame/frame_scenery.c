@@ -2,6 +2,7 @@
 #include "sensor/frame/frame_scenery.h"
 
 #include "entities/scenery/scenery_buildings.h"
+#include "entities/scenery/scenery_lamps.h"
 
 #include <stdlib.h>
 
@@ -57,16 +58,23 @@ static Status add_clutter(FrameScenery *s, const Landscape *landscape)
     return status;
 }
 
+Status frame_scenery_culture(FrameScenery *s, const SceneryPlan *plan, const Landscape *landscape)
+{
+    if (plan->from != CULTURE_FROM_SEED || s->culture.index) return STATUS_OK;
+    const Status status = culture_invent(&s->culture, landscape, &plan->invented);
+    return status == STATUS_OK ? culture_give_way(&s->culture, &s->gave_way, s->driven, s->drivens) : status;
+}
+
 Status frame_scenery_make(FrameScenery *s, const SceneryPlan *plan, const Landscape *landscape)
 {
-    Status status = STATUS_OK;
     s->plan = *plan;
-    if (plan->from == CULTURE_FROM_SEED) status = culture_invent(&s->culture, landscape, &plan->invented);
-    if (status == STATUS_OK && plan->from == CULTURE_FROM_SEED)
-        status = culture_give_way(&s->culture, &s->gave_way, s->driven, s->drivens);
+    Status status = frame_scenery_culture(s, plan, landscape);
     if (status == STATUS_OK && s->culture.index)
-        status = scenery_add_buildings(&s->scenery, &s->culture, frame_scenery_ground, (void *)landscape);
-    return status == STATUS_OK ? add_clutter(s, landscape) : status;
+        status = scenery_add_harmed_buildings(&s->scenery, &s->culture, plan->harm, plan->harms, frame_scenery_ground,
+                                              (void *)landscape);
+    s->scenery.smokes = plan->smoke;
+    if (status == STATUS_OK) status = add_clutter(s, landscape);
+    return status == STATUS_OK && plan->lamps ? scenery_add_lamps(&s->scenery, plan->clutter_seed) : status;
 }
 
 void frame_scenery_free(FrameScenery *s)
@@ -88,7 +96,10 @@ void frame_scenery_count(SceneryCounts *out, const FrameScenery *s)
                            .trees = s->culture.trees};
     for (int k = 0; k < s->scenery.objects; k++) {
         const SceneryObject *o = &s->scenery.object[k];
+        for (int h = 0; h < s->scenery.harms; h++)
+            if (s->scenery.harm[h].object == k) out->damaged++, h = s->scenery.harms;
         if (o->kind == SCENERY_BUILDINGS) out->cells++;
         else out->clutter++, out->of_class[o->class]++;
     }
+    for (int k = 0; k < s->scenery.lamps; k++) out->lamps[s->scenery.lamp[k].kind]++;
 }

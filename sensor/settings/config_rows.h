@@ -340,6 +340,8 @@ enum { config_paths_size = 4096 };
     ROW(NAME_OR_PATH, terrain., clutter_table, "rear_area", 1024, \
         "what clutter there is: rear_area (vehicles, generators, machines, stores, fires about troops), countryside or a " \
         "CSV as etc/clutter.csv") \
+    ROW(SWITCH, terrain., lamps, true, "on|off", \
+        "windows, street lamps and headlamps of buildings and clutter are lit by night; off: a blackout") \
     ROW(SWITCH, terrain., woods, true, "on|off", \
         "trees, bushes, hedges and low plants, by canopy layers, marked trunks or surface classes; off: bare " \
         "ground") \

@@ -12,6 +12,7 @@
 #include "render/heat/given_heat.h"
 #include "render/heat/vehicle_heat.h"
 #include "render/heat/part_table.h"
+#include "render/light/lamps.h"
 #include "render/materials/materials.h"
 #include "render/scattering/built/facade_table.h"
 #include "render/scattering/built/thing_table.h"
@@ -221,6 +222,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (table_column(&table, "surface") >= 0 && materials_open(&materials, materials_path, path, NULL) == STATUS_OK)
             materials_close(&materials);
         if (table_column(&table, "pulse_us") >= 0) (void)radar_preset_check(path);
+        static LampTypes lamps;
+        if (table_column(&table, "flux_lm") >= 0 && lamp_types_read(&lamps, path) == STATUS_OK)
+            for (int k = 0; k < lamps.count; k++)
+                if (!(lamps.type[k].share <= 1 && lamps.type[k].w_lm[optical_channel_pan] <= 3)) abort();
         static ClutterTable clutter;
         if (table_column(&table, "texture_m") >= 0 && clutter_table_open(&clutter, path) == STATUS_OK)
             for (int surface = 0; surface < SURFACE_COUNT; surface++)

@@ -11,6 +11,7 @@
 #include "render/heat/given_heat.h"
 #include "render/heat/ground_column_private.h"
 #include "render/heat/part_table.h"
+#include "render/light/lamps.h"
 #include "render/materials/materials.h"
 #include "render/scattering/built/facade_table.h"
 #include "render/scattering/built/thing_table.h"
@@ -79,6 +80,11 @@ static Status read_effects(const char *path)
 {
     static EffectTable t;
     return effect_table_open(&t, path);
+}
+static Status read_lamps(const char *path)
+{
+    static LampTypes t;
+    return lamp_types_read(&t, path);
 }
 static Status read_clutter(const char *path)
 {
@@ -212,6 +218,7 @@ static const struct Reader {
     {"ground_detail.csv", read_detail, NULL},
     {"effects.csv", read_effects, NULL},
     {"missiles.csv", read_missiles, NULL},
+    {"lamps.csv", read_lamps, NULL},
     {"quality.csv", read_quality, NULL},
     {"sensors.csv", read_sensor, NULL},
     {"radars.csv", read_radar, NULL},

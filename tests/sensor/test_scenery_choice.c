@@ -106,7 +106,10 @@ static void what_is_invented_follows_from_the_plan(void **state)
     CHECK(n.buildings > 10 && n.cells > 0 && n.cells + n.clutter == n.objects && s.culture.index);
     snprintf(line, sizeof line, "buildings: %d invented, %d walls, fences and lines, %d other works", n.buildings,
              n.lines, n.points);
-    CHECK(said.count == 2 && says(&said, line));
+    CHECK(said.count == 3 && says(&said, line));
+    snprintf(line, sizeof line, "lamps: %d windows, %d street lamps, %d pairs of headlamps", n.lamps[LAMP_WINDOW],
+             n.lamps[LAMP_STREET], n.lamps[LAMP_VEHICLE]);
+    CHECK(n.lamps[LAMP_WINDOW] > 20 && n.lamps[LAMP_VEHICLE] <= n.driving && says(&said, line));
     again = (FrameScenery){0};
     assert_int_equal(frame_scenery_make(&again, &s.plan, &land), STATUS_OK);
     frame_scenery_count(&m, &again);

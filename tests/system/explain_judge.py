@@ -95,6 +95,8 @@ def light(l, thermal):
         seen = fma(l['sunlit'], l['sun_transmittance'], seen)
         if thermal:
             seen = fma(l['emitted'], l['transmittance'], seen)
+        if 'lamps' in l:
+            seen = fma(l['lamps'], l['air_transmittance'], seen)
     if 'smoke' in l:
         seen = f32(f32(seen * f32(l['smoke_transmittance'])) + f32(l['smoke']))
     return seen

@@ -70,9 +70,9 @@ static void bound_mesh(NodeMesh *mesh)
     for (int a = 0; a < 3; a++) mesh->half[a] = 0.5 * (high[a] - low[a]) + room_m;
 }
 
-/* Parts of a node that are hidden in the same states of damage are one mesh; state 0 hides nothing. */
-enum { hidden_groups = 1 << (model_damage_states - 1) };
-static int hidden_group_of(uint8_t hidden) { return hidden >> 1 & (hidden_groups - 1); }
+/* Parts of a node that are hidden in the same states of damage are one mesh. */
+enum { hidden_groups = 1 << model_damage_states };
+static int hidden_group_of(uint8_t hidden) { return hidden & (hidden_groups - 1); }
 static int hidden_group(const ModelPart *part) { return hidden_group_of(part->damage_hidden); }
 
 /* Embree only finds candidates, by boxes with conservative tests and a hundred times the margin that the floats of a
@@ -220,7 +220,7 @@ static Status build_model(ModelMeshes *meshes, Tracer *tracer, const Model *mode
     for (int g = 0; g < groups && status == STATUS_OK; g++)
         if (triangle_count[g] > 0) {
             status = build_mesh(&meshes->mesh[meshes->count], tracer, meshes, g / hidden_groups,
-                                (uint8_t)(g % hidden_groups << 1), triangle_count[g]);
+                                (uint8_t)(g % hidden_groups), triangle_count[g]);
             meshes->count++; /* a partly built one is closed as well */
         }
 done:

@@ -21,6 +21,11 @@ static Status check(const Scenery *s)
         log_error("scenery: what drives has no object or no path: mover=%d object=%d", k, m->object);
         return STATUS_BAD_VALUE;
     }
+    for (int k = 0; k < s->harms; k++) {
+        if (s->harm[k].object >= 0 && s->harm[k].object < s->objects) continue;
+        log_error("scenery: what is damaged is no object: harm=%d object=%d", k, s->harm[k].object);
+        return STATUS_BAD_VALUE;
+    }
     return STATUS_OK;
 }
 
@@ -50,10 +55,10 @@ static Status rest_models(SceneryTracer *t)
 }
 
 static Status pose(PosedEntity *out, const SceneryTracer *t, int object, const double p_enu[3],
-                   const double r_enu_from_body[9], Arena *arena)
+                   const double r_enu_from_body[9], int of_damage, Arena *arena)
 {
     const SceneryObject *o = &t->scenery->object[object];
-    const int            damage = o->damage < model_damage_states ? o->damage : model_damage_states - 1;
+    const int            damage = of_damage < model_damage_states ? of_damage : model_damage_states - 1;
     *out = (PosedEntity){.model = -1};
     if (parts_node_count(t->tracer, o->model) == 0) return STATUS_OK;
     out->node = arena_alloc(arena, (size_t)parts_node_count(t->tracer, o->model), sizeof *out->node);
@@ -115,8 +120,20 @@ static Status pose_objects(SceneryTracer *t)
         Status status = STATUS_OK;
         t->posed[k].model = -1;
         if (t->mover[k]) t->moving++;
-        else status = pose(&t->posed[k], t, k, s->object[k].p_enu, s->object[k].r_enu_from_body, t->arena);
+        else
+            status = pose(&t->posed[k], t, k, s->object[k].p_enu, s->object[k].r_enu_from_body, s->object[k].damage,
+                          t->arena);
         if (status != STATUS_OK) return status;
+    }
+    t->harmed = arena_alloc(t->arena, (size_t)s->harms + 1, sizeof *t->harmed);
+    if (!t->harmed) return STATUS_NO_MEMORY;
+    t->moved = s->movers;
+    for (int k = 0; k < s->harms; k++) {
+        const int object = s->harm[k].object;
+        if (t->mover[object]) continue;
+        t->harmed[t->moved - s->movers] = object;
+        t->mover[object] = ++t->moved;
+        t->moving++;
     }
     return plant_tree(t);
 }
@@ -171,7 +188,9 @@ Status scenery_tracer_materials(SceneryTracer *t, const Materials *materials, co
         int *of = row + (size_t)at * model_damage_states;
         first[m] = at;
         status = materials_of_model(undamaged, of, materials, &s->model[m], path);
-        for (int p = 0; p < s->model[m].part_count; p++) of[p * model_damage_states] = undamaged[p];
+        for (int p = 0; p < s->model[m].part_count; p++)
+            for (int k = 0; k < (s->model[m].part[p].damage_hidden ? model_damage_states : 1); k++)
+                of[p * model_damage_states + k] = undamaged[p]; /* parts of a state have its materials */
         at += s->model[m].part_count;
     }
     free(undamaged);
@@ -196,20 +215,22 @@ static bool box_that_drives(void *user, int object, double low[3], double high[3
 static Status move_objects(SceneryFrame *f, double t_s, Arena *arena)
 {
     const Scenery *s = f->of->scenery;
-    const size_t   count = (size_t)s->movers + 1;
+    const size_t   count = (size_t)f->of->moved + 1;
     int           *item = arena_alloc(arena, count, sizeof *item);
     double(*sphere)[4] = arena_alloc(arena, count, sizeof *sphere);
     int drawable = 0;
     f->moved = arena_alloc(arena, count, sizeof *f->moved);
     if (!item || !sphere || !f->moved) return STATUS_NO_MEMORY;
-    for (int k = 0; k < s->movers; k++) f->moved[k].model = -1;
+    for (int k = 0; k < f->of->moved; k++) f->moved[k].model = -1;
     for (int object = 0; object < s->objects; object++) { /* items ascend */
         const int mover = f->of->mover[object];
         if (!mover) continue;
         PosedEntity *e = &f->moved[mover - 1];
         double       p_enu[3], r_enu_from_body[9];
-        scenery_pose(p_enu, r_enu_from_body, s, &s->mover[mover - 1], t_s);
-        const Status status = pose(e, f->of, object, p_enu, r_enu_from_body, arena);
+        memcpy(p_enu, s->object[object].p_enu, sizeof p_enu);
+        memcpy(r_enu_from_body, s->object[object].r_enu_from_body, sizeof r_enu_from_body);
+        if (mover <= s->movers) scenery_pose(p_enu, r_enu_from_body, s, &s->mover[mover - 1], t_s);
+        const Status status = pose(e, f->of, object, p_enu, r_enu_from_body, scenery_damage(s, object, t_s), arena);
         if (status != STATUS_OK) return status;
         if (e->model < 0) continue;
         item[drawable] = object;
@@ -236,8 +257,9 @@ Status scenery_frame_create(SceneryFrame **out, const SceneryTracer *t, const Sc
 uint64_t scenery_frame_hash(const SceneryFrame *f)
 {
     uint64_t hash = f ? (uint64_t)(uintptr_t)f->of : 0;
-    for (int k = 0; f && f->tree && k < f->of->scenery->movers; k++) {
+    for (int k = 0; f && f->tree && k < f->of->moved; k++) {
         uint64_t bits[3 + 9];
+        hash ^= (uint64_t)f->moved[k].damage;
         memcpy(bits, f->moved[k].p_enu, sizeof f->moved[k].p_enu);
         memcpy(bits + 3, f->moved[k].r_enu_from_body, sizeof f->moved[k].r_enu_from_body);
         for (int n = 0; n < 12; n++) hash = (hash ^ bits[n]) * UINT64_C(0x9E3779B97F4A7C15), hash ^= hash >> 29;

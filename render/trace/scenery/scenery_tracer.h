@@ -2,9 +2,9 @@
  *
  * Made once, for all frames: an Embree scene a node of each model (render/trace/parts), which its objects share, the
  * pose of every object that stands, and a tree over their boxes (render/trace/visibility/broad_phase.h). A frame poses
- * what drives, and nothing else. Hits, ranges and normals are as those of entities' parts: exact, in double, of equal
- * ranges that of the lowest object; the eye's rays that bend find an object raised as a whole, by what the middle of
- * its sphere is. */
+ * what drives and what is damaged in the course of the exercise, and nothing else. Hits, ranges and normals are as
+ * those of entities' parts: exact, in double, of equal ranges that of the lowest object; the eye's rays that bend find
+ * an object raised as a whole, by what the middle of its sphere is. */
 #ifndef RENDER_TRACE_SCENERY_SCENERY_TRACER_H
 #define RENDER_TRACE_SCENERY_SCENERY_TRACER_H
 

@@ -12,7 +12,9 @@ struct SceneryTracer {
     Arena         *arena;            /* of all that follows */
     NodePose     **rest;             /* [models][nodes] */
     PosedEntity   *posed;            /* [objects]; of those that drive model is -1 */
-    int           *mover;            /* [objects]: index + 1 of Scenery.mover; 0: it stands */
+    int           *mover;            /* [objects]: index + 1 of SceneryFrame.moved; 0: it stands as it is */
+    int            moved;            /* of Scenery.mover, and behind them objects whose damage changes: */
+    int           *harmed;           /* [moved - movers]: objects */
     BroadPhase    *tree;             /* of those that stand */
     int            drawable, moving; /* objects that stand, and that drive, and have something to meet */
     int           *row_first;        /* [models] of row */
@@ -21,7 +23,7 @@ struct SceneryTracer {
 
 struct SceneryFrame {
     const SceneryTracer *of;
-    PosedEntity         *moved; /* [movers] */
+    PosedEntity         *moved; /* [SceneryTracer.moved] */
     BroadPhase          *tree;  /* of what drives; NULL: nothing does */
     unsigned             skips_off;
     double               eye_enu[3];

@@ -132,10 +132,11 @@ void choice_report_night(Choices *choices, unsigned bands, double unix_s, const 
         lowest_deg = fmin(lowest_deg, sun.elevation_rad / rad_per_deg);
     }
     if (lowest_deg < dark_deg)
-        choice_add(choices,
-                   "optical: black or nearly so, the sun is %.0f degrees below the horizon and neither moon nor "
-                   "lamps are modelled; lwir and mwir see (exercise.utc, sensor.bands)",
-                   -lowest_deg);
+        choice_add(
+            choices,
+            "optical: black or nearly so but for lamps (terrain.lamps), the sun is %.0f degrees below the horizon "
+            "and the moon is not modelled; lwir and mwir see (exercise.utc, sensor.bands)",
+            -lowest_deg);
 }
 
 /* ---- shapes ----------------------------------------------------------------------------------------- */

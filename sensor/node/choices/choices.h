@@ -56,8 +56,8 @@ int choice_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* Unix time of exercise time 0. Also reports senders whose time stamps are not a clock. */
 Status choice_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config,
                    const LocalFrame *frame);
-/* Reports when optical images of this place will be black: at the beginning or the end of the plan the sun is more than
- * 6 degrees below the horizon (the end of civil twilight). */
+/* Reports when optical images of this place will be black but for lamps: at the beginning or the end of the plan the
+ * sun is more than 6 degrees below the horizon (the end of civil twilight). */
 void choice_report_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan,
                          const LocalFrame *frame);
 /* The world's local frame. It is the exercise's: a grid of cells of choice_cell_m lies about the middle of what is on
@@ -149,6 +149,17 @@ Status choice_driven(DrivenPath **out, int *count, const ChoiceBasis *basis, con
                      const Landscape *landscape);
 /* Of the same square: terrain.buildings, terrain.trees, terrain.clutter. basis->evidence is not used.
  * frame_scenery_free after success and failure. */
+/* Which buildings of it the exercise damages, and when: plan->harm. culture: indexed. At most 4096 bursts. */
+Status choice_harm(SceneryPlan *plan, const Culture *culture, const ChoiceBasis *basis, const LocalFrame *frame);
+/* Adds all that it follows from to a hash. False: out of memory. */
+bool choice_harm_hash(Sha256 *digest, const Survey *survey);
+/* Distance to which a burst of this charge does that damage, 1 .. 3, m; the damage of a burst to a building, 0 .. 3. */
+double choice_harm_radius(double charge_kg, int damage);
+int    choice_burst_damage(const Culture *culture, int building, const double p_enu[3], double charge_kg);
+/* The building that an entity of this type and model (of the catalog; -1: none) stands for at a place: one of kind 5
+ * whose model is a building, within the outline. -1: none. */
+int    choice_building_of(const Culture *culture, const Catalog *catalog, DisEntityType type, int model,
+                          const double p_enu[3]);
 Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
                       const Landscape *landscape);
 

@@ -31,7 +31,9 @@ static SceneryPlan plan_of(const Config *config, const WoodsSquare *square)
                                       .centre_m = {square->centre_m[0], square->centre_m[1]},
                                       .half_width_m = square->half_width_m},
                          .clutter = config->terrain.clutter,
-                         .clutter_seed = (uint64_t)config->seed};
+                         .clutter_seed = (uint64_t)config->seed,
+                         .lamps = config->terrain.lamps,
+                         .smoke = true};
     snprintf(plan.clutter_table, sizeof plan.clutter_table, "%s", config->terrain.clutter_table);
     for (int k = 0; k < 2; k++) {
         plan.south_west_m[k] = square->centre_m[k] - half_m;
@@ -63,18 +65,26 @@ static void report(Choices *choices, const FrameScenery *s, const Config *config
     if (s->plan.clutter > 0)
         choice_add(choices, "clutter: %d things, %d of them driving, within %.1f km (terrain.clutter)", n.clutter,
                    n.driving, 0.5e-3 * (s->plan.north_east_m[0] - s->plan.south_west_m[0]));
+    if (n.damaged > 0)
+        choice_add(choices, "damage: of %d buildings, by bursts near them and entities that stand for them (kind 5)",
+                   n.damaged);
+    if (s->scenery.lamps > 0)
+        choice_add(choices, "lamps: %d windows, %d street lamps, %d pairs of headlamps, lit by night (terrain.lamps)",
+                   n.lamps[LAMP_WINDOW], n.lamps[LAMP_STREET], n.lamps[LAMP_VEHICLE]);
 }
 
 Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
                       const Landscape *landscape)
 {
-    const double      begun_s = wall_clock_s();
-    const SceneryPlan plan = plan_of(basis->config, square);
-    Status            status = STATUS_OK;
+    const double begun_s = wall_clock_s();
+    SceneryPlan  plan = plan_of(basis->config, square);
+    Status       status = STATUS_OK;
     *out = (FrameScenery){0};
     if (plan.from == CULTURE_FROM_RECORDS) status = read_files(&out->culture, basis->config, square, landscape);
     if (status == STATUS_OK && basis->evidence && (plan.from == CULTURE_FROM_SEED || plan.clutter > 0))
         status = choice_driven(&out->driven, &out->drivens, basis, square, landscape);
+    if (status == STATUS_OK) status = frame_scenery_culture(out, &plan, landscape);
+    if (status == STATUS_OK) status = choice_harm(&plan, &out->culture, basis, &landscape->frame);
     if (status == STATUS_OK) status = frame_scenery_make(out, &plan, landscape);
     if (status != STATUS_OK)
         log_error("scenery: %s; terrain.buildings=off and terrain.clutter=0 show none", status_name(status));

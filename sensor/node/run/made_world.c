@@ -18,10 +18,11 @@ static const char *const layer_keys[MADE_LAYERS] = {
     [MADE_LOG] = "exercise.port exercise.causal node.site node.application",
     [MADE_SURVEY] = "",
     [MADE_CATALOG] = "models.",
-    [MADE_GROUND] = "seed terrain. -terrain.woods -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter",
-    [MADE_CULTURE] = "seed terrain.buildings terrain.trees terrain.clutter",
+    [MADE_GROUND] =
+        "seed terrain. -terrain.woods -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter -terrain.lamps",
+    [MADE_CULTURE] = "seed terrain.buildings terrain.trees terrain.clutter terrain.lamps",
     [MADE_WOODS] =
-        "seed terrain. -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
+        "seed terrain. -terrain.detail -terrain.buildings -terrain.trees -terrain.clutter -terrain.lamps -terrain.woods_level1_px -terrain.woods_tables -terrain.woods_sway "
         "-terrain.woods_low_m -terrain.woods_far_m -terrain.woods_far_mb",
     [MADE_MODELS] = "models. terrain.detail terrain.woods_leaves terrain.woods_level1_px terrain.woods_tables "
                     "terrain.woods_sway terrain.woods_far_m terrain.woods_far_mb",
@@ -361,7 +362,8 @@ static Status need_culture(MadeWorld *m, const MadeOf *of, const GroundEvidence 
     add_clutter(&key, part);
     /* ground that the log has made keeps what it says of vehicles; placed ground has none of it */
     const bool placed = *of->config->terrain.place;
-    key.good = key.good && *m->key[MADE_GROUND] && (!placed || choice_evidence_hash(key.digest, evidence));
+    key.good = key.good && *m->key[MADE_GROUND] && (!placed || choice_evidence_hash(key.digest, evidence)) &&
+               (strcmp(part->terrain.buildings, "off") == 0 || choice_harm_hash(key.digest, made_basis_survey(m)));
     if (is_there(key_text, m, MADE_CULTURE, &key)) return STATUS_OK;
     const ChoiceBasis basis = {made_basis_survey(m), part, m->catalog, placed ? evidence : NULL, m->cache, NULL};
     const Status      status = choice_scenery(&m->scenery, &m->said[MADE_CULTURE], &basis, of->square, &m->landscape);

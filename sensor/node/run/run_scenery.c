@@ -15,16 +15,25 @@ static const Field class_rows[] = {
     {"CLUTTER", "", "", "", "things", .item = next_class, .kind = FIELD_OF_INT},
 };
 
+static const Field lamp_rows[] = {
+    {"windows", "", "", "", "panes of heated dwellings", OF_COUNTS(lamps[LAMP_WINDOW])},
+    {"street", "", "", "", "of streets and yards", OF_COUNTS(lamps[LAMP_STREET])},
+    {"vehicles", "", "", "", "pairs of headlamps of vehicles that drive", OF_COUNTS(lamps[LAMP_VEHICLE])},
+};
+
 static const Field scenery_rows[] = {
     {"objects", "", "", "", "squares of ground with buildings and works, and things of clutter", OF_COUNTS(objects)},
     {"models", "", "", "", "meshes that they share", OF_COUNTS(models)},
     {"buildings", "", "", "", "buildings", OF_COUNTS(buildings)},
+    {"damaged", "", "", "", "of these, buildings that come to damage, by Detonations or as an entity's",
+     OF_COUNTS(damaged)},
     {"lines", "", "", "", "walls, fences, power lines, bridges, roads and rivers", OF_COUNTS(lines)},
     {"points", "", "", "", "poles, tanks, masts and other works at a place", OF_COUNTS(points)},
     {"trees", "", "", "", "trees of terrain.trees", OF_COUNTS(trees)},
     {"clutter", "", "", "", "things of clutter", OF_COUNTS(clutter)},
     {"classes", "", "", "", "of these, by class", FIELD_OBJECT(class_rows)},
     {"driving", "", "", "", "of these, vehicles that drive", OF_COUNTS(driving)},
+    {"lamps", "", "", "", "that are lit by night, each at its hours: terrain.lamps", FIELD_OBJECT(lamp_rows)},
 };
 const FieldTable run_scenery_fields = {scenery_rows, sizeof scenery_rows / sizeof *scenery_rows};
 

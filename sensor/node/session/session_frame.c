@@ -2,6 +2,7 @@
  * measured, its record. */
 #include "sensor/node/session/session_private.h"
 
+#include "sensor/node/choices/choices.h"
 #include "sensor/verify/saved_frame/frame_save.h"
 #include "sensor/publish/consumers/consume_pairs.h"
 #include "sensor/frame/frame_world.h"
@@ -229,6 +230,20 @@ static Status save_frame(const Session *s, const Frame *f, const Eye *eye)
     return STATUS_OK;
 }
 
+/* A building that an entity stands for is seen, and the entity's own model is not. */
+static void take_over_buildings(Frame *f, const SessionShared *shared)
+{
+    Snapshot *s = &f->seen.snapshot;
+    for (int i = 0; i < s->count && shared->scenery; i++) {
+        SnapshotEntity *e = &s->entity[i];
+        double          p_enu[3];
+        if (e->type.kind != dis_kind_cultural_feature || e->model < 0) continue;
+        enu_from_ecef(p_enu, &shared->world->frame, e->p_ecef);
+        if (choice_building_of(&shared->scenery->culture, shared->catalog, e->type, e->model, p_enu) >= 0)
+            e->model = -1;
+    }
+}
+
 Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, const FrameTime *when)
 {
     const double         t_s = when->t_s;
@@ -240,6 +255,7 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, cons
     if (status == STATUS_OK && s->heat.vehicles)
         status = world_vehicles_show(s->heat.vehicles, &f->seen.snapshot, f->arena);
     if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
+    take_over_buildings(f, shared);
     f->times.posed_s = wall_clock_s();
     *left_out = f->seen.snapshot.left_out;
     f->number = when->number;

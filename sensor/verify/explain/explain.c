@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 const char *const explain_term_name[EXPLAIN_TERMS] = {
-    "emitted", "sun",        "sky",      "ground",   "surroundings",     "path", "beyond", "disc",
-    "smoke",   "neighbours", "bounce_1", "bounce_2", "bounce_3_and_more"};
+    "emitted", "sun",  "sky",   "ground",     "surroundings", "lamps",    "path",
+    "beyond",  "disc", "smoke", "neighbours", "bounce_1",     "bounce_2", "bounce_3_and_more"};
 
 /* ---- names ------------------------------------------------------------------------------------- */
 
@@ -65,6 +65,7 @@ static void add_light(ExplainedPlane *p, const PixelSample *s, double weight)
     term[EXPLAIN_SUN] += left * (double)l->sunlit * (double)l->sun_transmittance;
     term[EXPLAIN_SKY] += air * sky;
     term[EXPLAIN_GROUND] += air * ground;
+    term[EXPLAIN_LAMPS] += air * (double)l->lamps;
     term[EXPLAIN_SURROUNDINGS] += air * ((double)l->reflected - sky - ground);
 }
 

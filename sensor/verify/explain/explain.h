@@ -18,6 +18,7 @@ typedef enum ExplainTerm {
     EXPLAIN_SKY,          /* likewise */
     EXPLAIN_GROUND,       /* light of the ground on the surface, likewise */
     EXPLAIN_SURROUNDINGS, /* of plants about it; with sensor.sky_samples of all that is about it */
+    EXPLAIN_LAMPS,        /* their own, and reflected */
     EXPLAIN_PATH,         /* radiance of the air before it, of a ray to the sky: the sky */
     EXPLAIN_BEYOND,       /* ground beyond the terrain's edge */
     EXPLAIN_DISC,         /* the sun itself */

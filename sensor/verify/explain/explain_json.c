@@ -26,6 +26,7 @@ static json_t *light_json(const PixelLight *l, bool met, AirBand channel)
         set(light, "reflected", (double)l->reflected);
         set(light, "reflected_sky", (double)l->reflected_sky);
         set(light, "reflected_ground", (double)l->reflected_ground);
+        if (l->lamps > 0) set(light, "lamps", (double)l->lamps);
         set(light, "air_transmittance", (double)l->air_transmittance);
         set(light, "sunlit", (double)l->sunlit);
         set(light, "sun_transmittance", (double)l->sun_transmittance);

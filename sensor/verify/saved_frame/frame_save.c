@@ -80,6 +80,7 @@ static Status pose_nodes(SavedFrame *file, double **joint, const Catalog *catalo
     *joint = arena_alloc(arena, nodes, sizeof **joint);
     if (!pose || !*joint) return STATUS_NO_MEMORY;
     if (s->node) return STATUS_OK;
+    for (size_t n = 0; n < nodes; n++) m3_identity(pose[n].r_body_from_node); /* of those that are not seen */
     for (int e = 0; e < s->count; e++) {
         const int m = s->entity[e].model, n = s->entity[e].first_node;
         if (m >= 0) snapshot_pose(pose + n, *joint + n, s, e, catalog_model(catalog, m));

@@ -124,3 +124,17 @@ void saved_fields_scenery(Fields *f, SavedFrame *file)
     if (f->from ? f->from->at < f->from->end : s->drivens > 0) /* last */
         field_list(f, &s->drivens, (void **)&s->driven, sizeof *s->driven, landscape_parts_rows, driven_fields);
 }
+
+/* A file without this chunk is of a frame whose scenery had neither. */
+void saved_fields_shows(Fields *f, SavedFrame *file)
+{
+    field_bool(f, "lamps", &file->scenery.plan.lamps);
+    field_bool(f, "smoke of fires", &file->scenery.plan.smoke);
+    field_int(f, "damage of buildings", &file->scenery.plan.harms, 0, building_harms_most);
+    for (int k = 0; k < file->scenery.plan.harms && fields_good(f); k++) {
+        BuildingHarm *h = &file->scenery.plan.harm[k];
+        field_u64(f, &h->building);
+        field_real(f, "time of damage", &h->t_s, -1e12, 1e12);
+        byte_field(f, "damage of a building", &h->damage, model_damage_states - 1);
+    }
+}

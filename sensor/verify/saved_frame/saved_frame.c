@@ -16,6 +16,11 @@ static bool has_marks(const SavedFrame *file)
 
 static bool has_woods(const SavedFrame *file) { return file->planted; }
 static bool has_scenery(const SavedFrame *file) { return file->built; }
+static bool has_shows(const SavedFrame *file)
+{
+    const SceneryPlan *plan = &file->scenery.plan;
+    return file->built && (plan->lamps || plan->smoke || plan->harms > 0);
+}
 static bool has_radar(const SavedFrame *file) { return file->measured; }
 static bool has_coarse(const SavedFrame *file) { return file->measured && file->radar.coarse; }
 
@@ -35,6 +40,7 @@ static const struct Chunk {
     {"woods", saved_fields_woods, has_woods},
     {"marks", saved_fields_marks, has_marks},
     {"scenery", saved_fields_scenery, has_scenery},
+    {"shows", saved_fields_shows, has_shows},
     {"radar", saved_fields_radar, has_radar},
     {"coarse", saved_fields_coarse, has_coarse},
 };

@@ -95,7 +95,7 @@ Status saved_frame_parse(SavedFrame *out, const uint8_t *bytes, size_t count, co
 
 /* Hashes the nodes, parts and facets of a model. */
 Status saved_model_sha256(char out[sha256_text_size], const Model *model);
-/* Hashes the models of a scenery, its objects, states and movers. */
+/* Hashes the models of a scenery, its objects, states, movers and lamps. */
 Status saved_scenery_sha256(char out[sha256_text_size], const Scenery *scenery);
 
 #endif

@@ -20,6 +20,7 @@ void saved_fields_ground(Fields *f, SavedFrame *file, const GroundCutout *kept);
 void saved_fields_marks(Fields *f, SavedFrame *file);
 void saved_fields_woods(Fields *f, SavedFrame *file);
 void saved_fields_scenery(Fields *f, SavedFrame *file);
+void saved_fields_shows(Fields *f, SavedFrame *file);
 void saved_fields_radar(Fields *f, SavedFrame *file);
 void saved_fields_coarse(Fields *f, SavedFrame *file);
 void saved_fields_planes(Fields *f, SavedFrame *file);

@@ -36,6 +36,16 @@ static void mover_bytes(ByteSink *s, const SceneryMover *m)
     sink_bytes(s, real, sizeof real);
 }
 
+static void lamp_bytes(ByteSink *s, const SceneryLamp *l)
+{
+    const int32_t number[4] = {l->kind, l->object, l->facet, l->facets};
+    const float   real[5] = {l->area_m2, l->type, l->draw, l->bed_h, l->rise_h};
+    sink_bytes(s, number, sizeof number);
+    sink_bytes(s, l->p, sizeof l->p);
+    sink_bytes(s, l->n, sizeof l->n);
+    sink_bytes(s, real, sizeof real);
+}
+
 Status saved_scenery_sha256(char out[sha256_text_size], const Scenery *scenery)
 {
     ByteSink s = {0};
@@ -48,6 +58,12 @@ Status saved_scenery_sha256(char out[sha256_text_size], const Scenery *scenery)
     for (int k = 0; k < scenery->objects; k++) object_bytes(&s, &scenery->object[k]);
     for (int k = 0; k < scenery->states; k++) state_bytes(&s, &scenery->state[k]);
     for (int k = 0; k < scenery->movers; k++) mover_bytes(&s, &scenery->mover[k]);
+    for (int k = 0; k < scenery->lamps; k++) lamp_bytes(&s, &scenery->lamp[k]);
+    for (int k = 0; k < scenery->harms; k++) {
+        const SceneryHarm *h = &scenery->harm[k];
+        sink_bytes(&s, (const int32_t[2]){h->object, h->damage}, 2 * sizeof(int32_t));
+        sink_bytes(&s, &h->t_s, sizeof h->t_s);
+    }
     if (scenery->paths > 0) sink_bytes(&s, scenery->path_enu, (size_t)scenery->paths * sizeof *scenery->path_enu);
     if (status == STATUS_OK) status = s.failed ? STATUS_NO_MEMORY : sha256_bytes(out, s.bytes, s.count);
     sink_free(&s);
