@@ -10,13 +10,15 @@ enum {
     tile_side = 32,
     tile_cells = tile_side * tile_side,
     most_heights = 16 << 20,
-    most_steps = 32
+    most_steps = 40,
+    finer = 4
 };
 static const double reach_m = 80, finest_m = 2, height_step_m = 0.25;
 static const double before_cells = 1.2;
 static const float  no_top_m = -1e9f;
 
-/* tan h / (1 + tan h) of 255; 0.25 m. */
+/* sin h of 255, the root of the mean square of the sector's directions, since level ground loses sin^2 of the light
+ * that comes from there; 0.25 m. */
 typedef struct Cell {
     uint8_t slope[sectors], height[sectors];
     float   ground_m;
@@ -40,8 +42,8 @@ typedef struct Step {
 typedef struct Making {
     SkyHorizons     *h;
     const Elevation *elevation;
-    float           *top_m; /* [ny][nx] */
-    int              nx, ny;
+    float           *top_m; /* [ny][nx], `fine` of them a cell each way: the side of a building is known that well */
+    int              nx, ny, fine;
     int             *tile; /* [tiles]: where each lies */
     int              steps;
     Step             step[2 * sectors][most_steps];
@@ -95,7 +97,7 @@ static float top_at(const Making *m, int i, int j)
 static void uncovered(int at[2], const Making *m, int i, int j)
 {
     at[0] = i, at[1] = j;
-    for (int ring = 0; ring < 8; ring++) {
+    for (int ring = 0; ring < 8 * m->fine; ring++) {
         int best = 1 << 20;
         for (int y = -ring; y <= ring; y++)
             for (int x = -ring; x <= ring; x++) {
@@ -109,12 +111,13 @@ static void uncovered(int at[2], const Making *m, int i, int j)
 /* Two directions a sector, each in growing steps. */
 static void list_ways(Making *m)
 {
-    const double cell_m = m->h->cell_m;
+    const double cell_m = m->h->cell_m / m->fine;
     for (int k = 0; k < 2 * sectors; k++) {
         const double azimuth = 2 * pi_rad * (0.5 * k - 0.25) / sectors;
         double       before = 0;
         m->steps = 0;
-        for (double way = 1; way * cell_m <= reach_m && m->steps < most_steps; way += way < 4 ? 1 : 0.25 * way) {
+        for (double way = 1; way * cell_m <= reach_m && m->steps < most_steps;
+             way += way < 4 * m->fine ? 1 : 0.25 * way) {
             Step *to = &m->step[k][m->steps++];
             to->x = (int)lround(way * sin(azimuth)), to->y = (int)lround(way * cos(azimuth));
             to->per_m = (float)(1 / (0.5 * (before + way) * cell_m)); /* its side lies between the two */
@@ -128,7 +131,7 @@ static void fill_cell(Cell *out, const Making *m, int i, int j)
     const double cell_m = m->h->cell_m, x_m = m->h->x0_m + i * cell_m, y_m = m->h->y0_m + j * cell_m;
     int          at[2];
     *out = (Cell){.ground_m = (float)elevation_height(m->elevation, x_m, y_m, NULL)};
-    uncovered(at, m, i, j);
+    uncovered(at, m, i * m->fine, j * m->fine);
     for (int s = 0; s < sectors; s++) {
         float sum = 0, height_m = 0;
         for (int k = 2 * s; k < 2 * s + 2; k++) {
@@ -136,13 +139,13 @@ static void fill_cell(Cell *out, const Making *m, int i, int j)
             for (int n = 0; n < m->steps; n++) {
                 const Step *step = &m->step[k][n];
                 const float rise_m = top_at(m, at[0] + step->x, at[1] + step->y) - out->ground_m;
-                if (!(rise_m * step->per_m > tangent)) continue;
-                tangent = rise_m * step->per_m;
-                height_m = rise_m > height_m ? rise_m : height_m;
+                /* a ridge behind its eaves makes the shadow, not the horizon close to the wall */
+                if (rise_m * step->per_m > 0.5f * tangent && rise_m > height_m) height_m = rise_m;
+                if (rise_m * step->per_m > tangent) tangent = rise_m * step->per_m;
             }
-            sum += 0.5f * tangent / (1 + tangent);
+            sum += 0.5f * tangent * tangent / (1 + tangent * tangent);
         }
-        out->slope[s] = (uint8_t)(255 * sum + 0.5f);
+        out->slope[s] = (uint8_t)(255 * sqrtf(sum) + 0.5f);
         out->height[s] = (uint8_t)clamp((double)height_m / height_step_m + 0.5, 1, 255);
     }
 }
@@ -184,7 +187,9 @@ static void mean_wall(SkyHorizons *h, const Scenery *s, const Materials *materia
 
 static Status fill(SkyHorizons *h, const SceneryTracer *tracer, const Elevation *elevation, Pool *pool)
 {
-    Making       m = {.h = h, .elevation = elevation, .nx = h->tiles_x * tile_side, .ny = h->tiles_y * tile_side};
+    Making m = {.h = h, .elevation = elevation, .nx = h->tiles_x * tile_side, .ny = h->tiles_y * tile_side};
+    m.fine = (int64_t)m.nx * m.ny * finer * finer <= most_heights ? finer : 1;
+    m.nx *= m.fine, m.ny *= m.fine;
     const size_t heights = (size_t)m.nx * (size_t)m.ny;
     Status       status = STATUS_OK;
     m.top_m = malloc(heights * sizeof *m.top_m);
@@ -194,7 +199,7 @@ static Status fill(SkyHorizons *h, const SceneryTracer *tracer, const Elevation 
     if (status == STATUS_OK) {
         list_ways(&m);
         for (size_t k = 0; k < heights; k++) m.top_m[k] = no_top_m;
-        scenery_tracer_tops(m.top_m, tracer, m.nx, m.ny, h->x0_m, h->y0_m, h->cell_m);
+        scenery_tracer_tops(m.top_m, tracer, m.nx, m.ny, h->x0_m, h->y0_m, h->cell_m / m.fine);
         for (int t = 0; t < h->tiles_x * h->tiles_y; t++)
             if (h->tile_of[t] >= 0) m.tile[h->tile_of[t]] = t;
         if (pool) pool_run(pool, h->tiles, fill_tile, &m);
@@ -289,6 +294,7 @@ static float ground_under(const SkyHorizons *h, double x_m, double y_m, float z_
 typedef struct Seen {
     float share;      /* that arrives */
     float lit;        /* of what buildings fill: mean cosine of the sun on their walls */
+    float shaded;     /* of what buildings fill: share whose walls face ground in their shadow, for that ground's sun */
     float own_high_m; /* of what is behind the place */
 } Seen;
 
@@ -296,7 +302,8 @@ static const float sine[8] = {0, 0.70710678f, 1, 0.70710678f, 0, -0.70710678f, -
 static const float cosine[8] = {1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f, 0, 0.70710678f};
 
 typedef struct Facet {
-    F32x8 aside, behind, up, sunny, all; /* of sectors: normal along them and against, walls that face us; open light */
+    F32x8 aside, behind, up, all; /* of sectors: normal along them and against; open light */
+    F32x8 sunny, shaded; /* of the walls there that face us: cosine of the sun, share of their ground that is shaded */
     float open;
 } Facet;
 
@@ -311,18 +318,20 @@ static void add_cell(Seen *to, const Cell *cell, float weight, float z_m, const 
     const F32x8 code = f32x8_of_ints(i32x8_of_bytes(cell->slope)) * f32x8_set(1.0 / 255);
     const F32x8 high = f32x8_of_ints(i32x8_of_bytes(cell->height)) * f32x8_set(height_step_m);
     const F32x8 over = _mm256_set1_ps(z_m - cell->ground_m > 0 ? z_m - cell->ground_m : 0);
-    const F32x8 near = code / f32x8_max(f32x8_set(1) - code, f32x8_set(1e-3));
+    const F32x8 near = code / f32x8_sqrt(f32x8_max(f32x8_set(1) - code * code, f32x8_set(1e-6)));
     const F32x8 more = f32x8_fma(near * f32x8_set(before_m), f32x8_max(f->aside, f32x8_set(0)) / high, f32x8_set(1));
     const F32x8 tangent = near / more * f32x8_clamp(f32x8_set(1) - over / high, 0, 1);
     const F32x8 left = f32x8_min(above(tangent, f->aside, f->up), f->all), hidden = f->all - left;
     to->share += weight * sum8(left) / f->open;
     to->lit += weight * sum8(hidden * f->sunny) / f->open;
-    to->own_high_m += weight * sum8(f32x8_and(high * f->behind, f32x8_greater(code, f32x8_set(0.2))));
+    to->shaded += weight * sum8(hidden * f->shaded) / f->open;
+    to->own_high_m += weight * sum8(f32x8_and(high * f->behind, f32x8_greater(code, f32x8_set(0.24))));
 }
 
-/* A place somewhat before its surface, so that its cell is not that of what it is on. sun_enu: NULL: it is not asked
+/* A place somewhat before its surface, so that its cell is not that of what it is on. light: NULL: the sun is not asked
  * for. */
-static Seen seen_at(const SkyHorizons *h, double x_m, double y_m, float z_m, const float n[3], const float *sun_enu)
+static Seen seen_at(const SkyHorizons *h, double x_m, double y_m, float z_m, const float n[3],
+                    const SkyHorizonLight *light)
 {
     const double x = (x_m - h->x0_m) / h->cell_m + before_cells * (double)n[0];
     const double y = (y_m - h->y0_m) / h->cell_m + before_cells * (double)n[1];
@@ -339,10 +348,12 @@ static Seen seen_at(const SkyHorizons *h, double x_m, double y_m, float z_m, con
     f.behind = f32x8_max(none - f.aside, none);
     const float behind = sum8(f.behind);
     f.behind = f.behind * _mm256_set1_ps(behind > 0.1f ? 1 / behind : 0);
-    f.sunny = none;
-    if (sun_enu)
-        f.sunny =
-            f32x8_max(none - f32x8_fma(_mm256_set1_ps(sun_enu[0]), east, _mm256_set1_ps(sun_enu[1]) * north), none);
+    f.sunny = f.shaded = none;
+    if (light) {
+        const F32x8 sun_east = _mm256_set1_ps(light->sun_enu[0]), sun_north = _mm256_set1_ps(light->sun_enu[1]);
+        f.sunny = f32x8_max(none - f32x8_fma(sun_east, east, sun_north * north), none);
+        f.shaded = f32x8_load(light->shaded);
+    }
     f.all = above(none, f.aside, f.up);
     f.open = sum8(f.all);
     const float u = (float)(x - i), v = (float)(y - j),
@@ -371,6 +382,13 @@ void sky_horizon_light(SkyHorizonLight *out, const SkyHorizons *h, const Air *ai
         out->wall[b] = (float)(b >= AIR_MWIR ? level_w_m2[b] : 0.5 * h->wall_rho[b] * (sky + level_w_m2[b]));
         out->sunlit_wall[b] = (float)(b >= AIR_MWIR ? 0 : h->wall_rho[b] * sun);
         out->level_sun[b] = (float)(sun * up > 0 ? sun * up / (sun * up + sky) : 0);
+        out->wall_by_sun[b] = b >= AIR_MWIR ? 0 : (float)(0.5 * h->wall_rho[b] * level_w_m2[b]) * out->level_sun[b];
+    }
+    /* A wall without ends that is turned away from the sun: its shadow is away / up times its height deep, and fills
+     * of the ground that a place on it sees 1 - z / sqrt(z^2 + deep^2), on the mean over the wall this. */
+    for (int s = 0; s < sectors && up > 0.02; s++) {
+        const float deep = fmaxf(out->sun_enu[0] * sine[s] + out->sun_enu[1] * cosine[s], 0) / out->sun_enu[2];
+        out->shaded[s] = 1 + deep - sqrtf(1 + deep * deep);
     }
 }
 
@@ -388,18 +406,20 @@ void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, cons
 {
     const F32x8 sky = f32x8_load(light->sky), level = f32x8_load(light->level), wall = f32x8_load(light->wall);
     const F32x8 sunlit = f32x8_load(light->sunlit_wall), level_sun = f32x8_load(light->level_sun);
+    const F32x8 by_sun = f32x8_load(light->wall_by_sun);
     for (int i = 0; i < hits->count; i++) {
         if (hits->kind[i] != hit_ground && hits->kind[i] != hit_scenery) continue;
         const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
         const float z_m = (float)hits->p_enu[2][i];
-        const Seen  seen = seen_at(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m, n, light->sun_enu);
+        const Seen  seen = seen_at(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m, n, light);
         float       of[8], shade = 0;
         if (hits->kind[i] == hit_scenery && seen.own_high_m > 0)
             shade = own_shade(light, &seen, n, z_m - ground_under(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m));
         if (seen.share == 1 && shade == 0) continue;
         const F32x8 up = _mm256_set1_ps(0.5f * (1 + n[2])), down = _mm256_set1_ps(0.5f * (1 - n[2])) * level;
         const F32x8 open = f32x8_max(sky * up + down, f32x8_set(1e-20));
-        const F32x8 walls = _mm256_set1_ps(1 - seen.share) * wall + _mm256_set1_ps(seen.lit) * sunlit;
+        const F32x8 walls = _mm256_set1_ps(1 - seen.share) * wall + _mm256_set1_ps(seen.lit) * sunlit -
+                            _mm256_set1_ps(seen.shaded) * by_sun;
         const F32x8 below = down * (f32x8_set(1) - _mm256_set1_ps(shade) * level_sun);
         f32x8_store(of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + below) / open);
         for (int b = 0; b < AIR_BAND_COUNT; b++)
