@@ -63,6 +63,7 @@ static float ground_under(const SkyHorizons *h, double x_m, double y_m, float z_
 typedef struct Seen {
     float share;      /* that arrives */
     float lit;        /* of what buildings fill: mean cosine of the sun on their walls */
+    float shaded;     /* of what buildings fill: share whose walls face ground in their shadow, for that ground's sun */
     float own_high_m; /* of what is behind the place */
 } Seen;
 
@@ -70,7 +71,8 @@ static const float sine[8] = {0, 0.70710678f, 1, 0.70710678f, 0, -0.70710678f, -
 static const float cosine[8] = {1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f, 0, 0.70710678f};
 
 typedef struct Facet {
-    F32x8 aside, behind, up, sunny, all; /* of sectors: normal along them and against, walls that face us; open light */
+    F32x8 aside, behind, up, all; /* of sectors: normal along them and against; open light */
+    F32x8 sunny, shaded; /* of the walls there that face us: cosine of the sun, share of their ground that is shaded */
     float open;
 } Facet;
 
@@ -85,34 +87,35 @@ static bool is_open(const HorizonCell *cell)
 
 /* What one cell leaves and hides, for a place at this height. before_m: the cell is that far before the place, along
  * the normal: what makes its horizon is as much farther from the place. own: what is behind it, else it stays. */
-static void cell_seen(F32x8 *left, F32x8 *lit, F32x8 *own, const HorizonCell *cell, float z_m, const Facet *f,
-                      double before_m)
+static void cell_seen(F32x8 *left, F32x8 *lit, F32x8 *shaded, F32x8 *own, const HorizonCell *cell, float z_m,
+                      const Facet *f, double before_m)
 {
     const F32x8 code = f32x8_of_ints(i32x8_of_bytes(cell->slope)) * f32x8_set(1.0 / 255);
     const F32x8 high = f32x8_of_ints(i32x8_of_bytes(cell->height)) * f32x8_set(horizon_height_step_m);
     const F32x8 over = _mm256_set1_ps(z_m - cell->ground_m > 0 ? z_m - cell->ground_m : 0);
-    const F32x8 near = code / f32x8_max(f32x8_set(1) - code, f32x8_set(1e-3));
+    const F32x8 near = code / f32x8_sqrt(f32x8_max(f32x8_set(1) - code * code, f32x8_set(1e-6)));
     const F32x8 more = f32x8_fma(near * f32x8_set(before_m), f32x8_max(f->aside, f32x8_set(0)) / high, f32x8_set(1));
     const F32x8 tangent = near / more * f32x8_clamp(f32x8_set(1) - over / high, 0, 1);
     *left = f32x8_min(above(tangent, f->aside, f->up), f->all);
     *lit = (f->all - *left) * f->sunny;
-    *own = f32x8_and(high * f->behind, f32x8_greater(code, f32x8_set(0.2)));
+    *shaded = (f->all - *left) * f->shaded;
+    *own = f32x8_and(high * f->behind, f32x8_greater(code, f32x8_set(0.24)));
 }
 
 /* Adds four cells, of these weights. own: what is behind the place is asked for. */
 static void add_cells(Seen *to, const HorizonCell *const cell[4], const float weight[4], float z_m, const Facet *f,
                       double before_m, bool own)
 {
-    F32x8 each[8], behind[4];
-    float sum[8];
+    F32x8 first[8], second[8]; /* what is left and lit, what is shaded and behind */
+    float sum[8], more[8];
     bool  some = false;
     for (int k = 0; k < 4; k++) {
-        each[k] = f->all, each[4 + k] = behind[k] = f32x8_set(0); /* where nothing hides any sky */
+        first[k] = f->all, first[4 + k] = second[k] = second[4 + k] = f32x8_set(0); /* where nothing hides any sky */
         if (!cell[k] || !(f->open > 1e-4f) || is_open(cell[k])) continue;
-        cell_seen(&each[k], &each[4 + k], &behind[k], cell[k], z_m, f, before_m);
+        cell_seen(&first[k], &first[4 + k], &second[k], &second[4 + k], cell[k], z_m, f, before_m);
         some = true;
     }
-    if (some) f32x8_store(sum, sums8(each));
+    if (some) f32x8_store(sum, sums8(first)), f32x8_store(more, sums8(second));
     for (int k = 0; k < 4; k++) {
         if (!cell[k] || !(f->open > 1e-4f)) {
             to->share += weight[k];
@@ -121,14 +124,15 @@ static void add_cells(Seen *to, const HorizonCell *const cell[4], const float we
         to->share += weight[k] * (some ? sum[k] : f->open) / f->open;
         if (!some) continue;
         to->lit += weight[k] * sum[4 + k] / f->open;
-        if (own) to->own_high_m += weight[k] * sum8(behind[k]);
+        to->shaded += weight[k] * more[k] / f->open;
+        if (own) to->own_high_m += weight[k] * more[4 + k];
     }
 }
 
-/* A place somewhat before its surface, so that its cell is not that of what it is on. sun_enu: NULL: it is not asked
+/* A place somewhat before its surface, so that its cell is not that of what it is on. light: NULL: the sun is not asked
  * for. own: what is behind the place is. */
-static Seen seen_at(const SkyHorizons *h, double x_m, double y_m, float z_m, const float n[3], const float *sun_enu,
-                    bool own)
+static Seen seen_at(const SkyHorizons *h, double x_m, double y_m, float z_m, const float n[3],
+                    const SkyHorizonLight *light, bool own)
 {
     const double x = (x_m - h->x0_m) / h->cell_m + before_cells * (double)n[0];
     const double y = (y_m - h->y0_m) / h->cell_m + before_cells * (double)n[1];
@@ -146,10 +150,12 @@ static Seen seen_at(const SkyHorizons *h, double x_m, double y_m, float z_m, con
     f.behind = f32x8_max(none - f.aside, none);
     const float behind = sum8(f.behind);
     f.behind = f.behind * _mm256_set1_ps(behind > 0.1f ? 1 / behind : 0);
-    f.sunny = none;
-    if (sun_enu)
-        f.sunny =
-            f32x8_max(none - f32x8_fma(_mm256_set1_ps(sun_enu[0]), east, _mm256_set1_ps(sun_enu[1]) * north), none);
+    f.sunny = f.shaded = none;
+    if (light) {
+        const F32x8 sun_east = _mm256_set1_ps(light->sun_enu[0]), sun_north = _mm256_set1_ps(light->sun_enu[1]);
+        f.sunny = f32x8_max(none - f32x8_fma(sun_east, east, sun_north * north), none);
+        f.shaded = f32x8_load(light->shaded);
+    }
     f.all = above(none, f.aside, f.up);
     f.open = sum8(f.all);
     const float u = (float)(x - i), v = (float)(y - j),
@@ -178,6 +184,13 @@ void sky_horizon_light(SkyHorizonLight *out, const SkyHorizons *h, const Air *ai
         out->wall[b] = (float)(b >= AIR_MWIR ? level_w_m2[b] : 0.5 * h->wall_rho[b] * (sky + level_w_m2[b]));
         out->sunlit_wall[b] = (float)(b >= AIR_MWIR ? 0 : h->wall_rho[b] * sun);
         out->level_sun[b] = (float)(sun * up > 0 ? sun * up / (sun * up + sky) : 0);
+        out->wall_by_sun[b] = b >= AIR_MWIR ? 0 : (float)(0.5 * h->wall_rho[b] * level_w_m2[b]) * out->level_sun[b];
+    }
+    /* A wall without ends that is turned away from the sun: its shadow is away / up times its height deep, and fills
+     * of the ground that a place on it sees 1 - z / sqrt(z^2 + deep^2), on the mean over the wall this. */
+    for (int s = 0; s < sky_horizon_sectors && up > 0.02; s++) {
+        const float deep = fmaxf(out->sun_enu[0] * sine[s] + out->sun_enu[1] * cosine[s], 0) / out->sun_enu[2];
+        out->shaded[s] = 1 + deep - sqrtf(1 + deep * deep);
     }
 }
 
@@ -195,19 +208,21 @@ void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, cons
 {
     const F32x8 sky = f32x8_load(light->sky), level = f32x8_load(light->level), wall = f32x8_load(light->wall);
     const F32x8 sunlit = f32x8_load(light->sunlit_wall), level_sun = f32x8_load(light->level_sun);
+    const F32x8 by_sun = f32x8_load(light->wall_by_sun);
     for (int i = 0; i < hits->count; i++) {
         if (hits->kind[i] != hit_ground && hits->kind[i] != hit_scenery) continue;
         const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
         const float z_m = (float)hits->p_enu[2][i];
         const Seen  seen =
-            seen_at(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m, n, light->sun_enu, hits->kind[i] == hit_scenery);
+            seen_at(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m, n, light, hits->kind[i] == hit_scenery);
         float of[8], shade = 0;
         if (hits->kind[i] == hit_scenery && seen.own_high_m > 0)
             shade = own_shade(light, &seen, n, z_m - ground_under(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m));
         if (seen.share == 1 && shade == 0) continue;
         const F32x8 up = _mm256_set1_ps(0.5f * (1 + n[2])), down = _mm256_set1_ps(0.5f * (1 - n[2])) * level;
         const F32x8 open = f32x8_max(sky * up + down, f32x8_set(1e-20));
-        const F32x8 walls = _mm256_set1_ps(1 - seen.share) * wall + _mm256_set1_ps(seen.lit) * sunlit;
+        const F32x8 walls = _mm256_set1_ps(1 - seen.share) * wall + _mm256_set1_ps(seen.lit) * sunlit -
+                            _mm256_set1_ps(seen.shaded) * by_sun;
         const F32x8 below = down * (f32x8_set(1) - _mm256_set1_ps(shade) * level_sun);
         f32x8_store(of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + below) / open);
         for (int b = 0; b < AIR_BAND_COUNT; b++)

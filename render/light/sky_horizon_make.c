@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-enum { sectors = sky_horizon_sectors, most_heights = 16 << 20, most_steps = 32 };
+enum { sectors = sky_horizon_sectors, most_heights = 16 << 20, most_steps = 40, finer = 4 };
 static const double reach_m = 80, finest_m = 2;
 static const float  no_top_m = -1e9f;
 
@@ -17,10 +17,10 @@ typedef struct Step {
 typedef struct Making {
     SkyHorizons     *h;
     const Elevation *elevation;
-    float           *top_m; /* [ny][nx] */
-    int              nx, ny;
+    float           *top_m; /* [ny][nx], `fine` of them a cell each way: the side of a building is known that well */
+    int              nx, ny, fine;
     int             *tile;          /* [tiles]: where each lies */
-    int              steps, margin; /* margin: cells that the farthest step goes along x or y */
+    int              steps, margin; /* margin: heights that the farthest step goes along x or y */
     Step             step[2 * sectors][most_steps];
 } Making;
 
@@ -72,7 +72,7 @@ static float top_at(const Making *m, int i, int j)
 static void uncovered(int at[2], const Making *m, int i, int j)
 {
     at[0] = i, at[1] = j;
-    for (int ring = 0; ring < 8; ring++) {
+    for (int ring = 0; ring < 8 * m->fine; ring++) {
         int best = 1 << 20;
         for (int y = -ring; y <= ring; y++)
             for (int x = -ring; x <= ring; x++) {
@@ -86,12 +86,13 @@ static void uncovered(int at[2], const Making *m, int i, int j)
 /* Two directions a sector, each in growing steps. */
 static void list_ways(Making *m)
 {
-    const double cell_m = m->h->cell_m;
+    const double cell_m = m->h->cell_m / m->fine;
     for (int k = 0; k < 2 * sectors; k++) {
         const double azimuth = 2 * pi_rad * (0.5 * k - 0.25) / sectors;
         double       before = 0;
         m->steps = 0;
-        for (double way = 1; way * cell_m <= reach_m && m->steps < most_steps; way += way < 4 ? 1 : 0.25 * way) {
+        for (double way = 1; way * cell_m <= reach_m && m->steps < most_steps;
+             way += way < 4 * m->fine ? 1 : 0.25 * way) {
             Step *to = &m->step[k][m->steps++];
             to->x = (int)lround(way * sin(azimuth)), to->y = (int)lround(way * cos(azimuth));
             to->per_m = (float)(1 / (0.5 * (before + way) * cell_m)); /* its side lies between the two */
@@ -112,7 +113,7 @@ static void fill_cell(HorizonCell *out, const Making *m, int i, int j)
 {
     int at[2];
     *out = (HorizonCell){.ground_m = ground_of(m, i, j)};
-    uncovered(at, m, i, j);
+    uncovered(at, m, i * m->fine, j * m->fine);
     for (int s = 0; s < sectors; s++) {
         float sum = 0, height_m = 0;
         for (int k = 2 * s; k < 2 * s + 2; k++) {
@@ -120,29 +121,38 @@ static void fill_cell(HorizonCell *out, const Making *m, int i, int j)
             for (int n = 0; n < m->steps; n++) {
                 const Step *step = &m->step[k][n];
                 const float rise_m = top_at(m, at[0] + step->x, at[1] + step->y) - out->ground_m;
-                if (!(rise_m * step->per_m > tangent)) continue;
-                tangent = rise_m * step->per_m;
-                height_m = rise_m > height_m ? rise_m : height_m;
+                /* a ridge behind its eaves makes the shadow, not the horizon close to the wall */
+                if (rise_m * step->per_m > 0.5f * tangent && rise_m > height_m) height_m = rise_m;
+                if (rise_m * step->per_m > tangent) tangent = rise_m * step->per_m;
             }
-            sum += 0.5f * tangent / (1 + tangent);
+            sum += 0.5f * tangent * tangent / (1 + tangent * tangent);
         }
-        out->slope[s] = (uint8_t)(255 * sum + 0.5f);
+        out->slope[s] = (uint8_t)(255 * sqrtf(sum) + 0.5f);
         out->height[s] = (uint8_t)clamp((double)height_m / horizon_height_step_m + 0.5, 1, 255);
     }
+}
+
+/* Heights of eight cells side by side, the first of which is here. */
+static F32x8 tops_of(const Making *m, const float *here)
+{
+    static const int32_t lane_number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const I32x8 lane = i32x8_mul(i32x8_load(lane_number), i32x8_set(m->fine));
+    return f32x8_gather(here, lane);
 }
 
 /* Whether eight cells from here on are uncovered, and all that they look at is on the grid. */
 static bool are_open(const Making *m, int i, int j)
 {
-    if (i < m->margin || j < m->margin || i + 8 + m->margin > m->nx || j + m->margin >= m->ny) return false;
-    const F32x8 top = f32x8_load(m->top_m + (size_t)j * (size_t)m->nx + (size_t)i);
+    const int x = i * m->fine, y = j * m->fine;
+    if (x < m->margin || y < m->margin || x + 8 * m->fine + m->margin > m->nx || y + m->margin >= m->ny) return false;
+    const F32x8 top = tops_of(m, m->top_m + (size_t)y * (size_t)m->nx + (size_t)x);
     return f32x8_bits(f32x8_greater(top, f32x8_set((double)no_top_m))) == 0;
 }
 
 /* Eight cells side by side that are open: fill_cell, to the same bits. */
 static void fill_eight(HorizonCell *out, const Making *m, int i, int j)
 {
-    const float *here = m->top_m + (size_t)j * (size_t)m->nx + (size_t)i;
+    const float *here = m->top_m + (size_t)(j * m->fine) * (size_t)m->nx + (size_t)(i * m->fine);
     const F32x8  one = f32x8_set(1), half = f32x8_set(0.5), none = f32x8_set(0);
     float        ground_m[8], slope[8], height_m[8];
     for (int c = 0; c < 8; c++) ground_m[c] = ground_of(m, i + c, j);
@@ -154,14 +164,14 @@ static void fill_eight(HorizonCell *out, const Making *m, int i, int j)
             F32x8 tangent = none;
             for (int n = 0; n < m->steps; n++) {
                 const Step *step = &m->step[k][n];
-                const F32x8 rise = f32x8_load(here + step->y * m->nx + step->x) - ground;
-                const F32x8 slopes = rise * _mm256_set1_ps(step->per_m), more = f32x8_greater(slopes, tangent);
-                tangent = f32x8_select(more, slopes, tangent);
-                high = f32x8_select(f32x8_and(more, f32x8_greater(rise, high)), rise, high);
+                const F32x8 rise = tops_of(m, here + step->y * m->nx + step->x) - ground;
+                const F32x8 slopes = rise * _mm256_set1_ps(step->per_m), near = f32x8_greater(slopes, half * tangent);
+                high = f32x8_select(f32x8_and(near, f32x8_greater(rise, high)), rise, high);
+                tangent = f32x8_select(f32x8_greater(slopes, tangent), slopes, tangent);
             }
-            sum = sum + half * tangent / (one + tangent);
+            sum = sum + half * tangent * tangent / (one + tangent * tangent);
         }
-        f32x8_store(slope, sum);
+        f32x8_store(slope, f32x8_sqrt(sum));
         f32x8_store(height_m, high);
         for (int c = 0; c < 8; c++) {
             out[c].slope[s] = (uint8_t)(255 * slope[c] + 0.5f);
@@ -215,6 +225,8 @@ static Status fill(SkyHorizons *h, const SceneryTracer *tracer, const Elevation 
 {
     Making m = {
         .h = h, .elevation = elevation, .nx = h->tiles_x * horizon_tile_side, .ny = h->tiles_y * horizon_tile_side};
+    m.fine = (int64_t)m.nx * m.ny * finer * finer <= most_heights ? finer : 1;
+    m.nx *= m.fine, m.ny *= m.fine;
     const size_t heights = (size_t)m.nx * (size_t)m.ny;
     Status       status = STATUS_OK;
     m.top_m = malloc(heights * sizeof *m.top_m);
@@ -224,7 +236,7 @@ static Status fill(SkyHorizons *h, const SceneryTracer *tracer, const Elevation 
     if (status == STATUS_OK) {
         list_ways(&m);
         for (size_t k = 0; k < heights; k++) m.top_m[k] = no_top_m;
-        scenery_tracer_tops(m.top_m, tracer, m.nx, m.ny, h->x0_m, h->y0_m, h->cell_m);
+        scenery_tracer_tops(m.top_m, tracer, m.nx, m.ny, h->x0_m, h->y0_m, h->cell_m / m.fine);
         for (int t = 0; t < h->tiles_x * h->tiles_y; t++)
             if (h->tile_of[t] >= 0) m.tile[h->tile_of[t]] = t;
         if (pool) pool_run(pool, h->tiles, fill_tile, &m);

@@ -7,7 +7,8 @@
 enum { horizon_tile_side = 32, horizon_tile_cells = horizon_tile_side * horizon_tile_side };
 static const double horizon_height_step_m = 0.25;
 
-/* tan h / (1 + tan h) of 255; steps of horizon_height_step_m. */
+/* sin h of 255, the root of the mean square of the sector's directions, since level ground loses sin^2 of the light
+ * that comes from there; steps of horizon_height_step_m. */
 typedef struct HorizonCell {
     uint8_t slope[sky_horizon_sectors], height[sky_horizon_sectors];
     float   ground_m;

@@ -246,6 +246,16 @@ static Status mark_objects(Ground *g, const SurfaceModel *model, double first_ra
     return status;
 }
 
+/* Whether the lowest returns run on in a straight line through q and p to c, which follow one another, no steeper than
+ * 50 degrees, and c is as smooth as its slope. */
+static bool runs_on(const Ground *g, size_t q, size_t p, size_t c)
+{
+    const float size_m = (float)g->blocks.block_m;
+    const float rise = g->low[c] - g->low[p], before = g->low[p] - g->low[q];
+    return fabsf(rise) <= 1.2F * size_m && fabsf(rise - before) <= 0.25F + 0.15F * fabsf(before) &&
+           g->high[c] - g->low[c] <= 0.5F + 2 * fabsf(rise) + 0.3F * size_m * g->slope[c];
+}
+
 /* Takes blocks back, a step of one block at a time, where the lowest returns run on in a straight line from two blocks
  * of ground, no steeper than 50 degrees, and the block is as smooth as its slope: hills and ridges that a square
  * flattened, but no roof behind its wall. */
@@ -254,7 +264,6 @@ static void regrow(Ground *g)
     const Blocks    *b = &g->blocks;
     const int        nx = b->nx, ny = b->ny;
     static const int di[4] = {1, -1, 0, 0}, dj[4] = {0, 0, 1, -1};
-    const float      most = (float)(1.2 * b->block_m), size_m = (float)b->block_m;
     /* object: 0 ground, 1 not, k + 2: taken back in step k */
     for (int step = 0; step < regrow_steps; step++) {
         bool any = false;
@@ -267,9 +276,7 @@ static void regrow(Ground *g)
                     const size_t    p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
                     if (g->object[p] == 1 || g->object[q] == 1 || g->object[p] == step + 2 || g->object[q] == step + 2)
                         continue;
-                    const float rise = g->low[c] - g->low[p], before = g->low[p] - g->low[q];
-                    if (fabsf(rise) > most || fabsf(rise - before) > 0.25F + 0.15F * fabsf(before)) continue;
-                    if (g->high[c] - g->low[c] > 0.5F + 2 * fabsf(rise) + 0.3F * size_m * g->slope[c]) continue;
+                    if (!runs_on(g, q, p, c)) continue;
                     g->object[c] = (uint8_t)(step + 2), any = true;
                     break;
                 }
@@ -296,35 +303,72 @@ static void square_sums(float *v, const Blocks *b, int radius, float *line)
     }
 }
 
-/* Gives up blocks taken back where what was taken back nearby ends in drops rather than on ground: seats of a stadium,
- * embankments against a hall. A hill that a square flattened ends on ground all around. */
-static Status give_up_stands(Ground *g)
+/* How what was taken back ends at block c: counts of its four sides where it joins the ground, where it drops, and
+ * where a smooth surface that is no ground goes on from it with a kink or a step. */
+typedef struct Ends {
+    int joins, drops, kinks;
+} Ends;
+
+static const float wall_m = 2.5F, smooth = 0.8F, bank_m = 10, many = 0.15F;
+
+static Ends ends_of(const Ground *g, size_t c)
 {
     const Blocks    *b = &g->blocks;
-    const int        nx = b->nx, ny = b->ny, radius = blocks_in(b, 60);
     static const int di[4] = {1, -1, 0, 0}, dj[4] = {0, 0, 1, -1};
-    const float      wall_m = 2.5F, step_m = (float)(1.2 * b->block_m);
-    float           *drops = g->work, *joins = g->opened;
-    float           *line = malloc((size_t)(nx > ny ? nx : ny) * sizeof *line);
+    const float      step_m = (float)(1.2 * b->block_m);
+    Ends             ends = {0};
+    for (int k = 0; k < 4; k++) {
+        /* a wall's own block may hold both heights, so the comparison goes one block further */
+        const ptrdiff_t d = di[k] + (ptrdiff_t)dj[k] * b->nx;
+        const size_t    p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
+        if (g->low[p] == FLT_MAX || g->low[q] == FLT_MAX) continue;
+        if (g->object[p] == 0 && fabsf(g->low[p] - g->low[c]) <= step_m) ends.joins++;
+        else if (g->object[q] < 2 && g->low[c] - g->low[q] > wall_m + 2 * step_m * g->slope[c]) ends.drops++;
+        else if (g->object[p] == 1 && g->object[q] == 1 && fabsf(g->low[q] - g->low[c]) <= 2 * step_m &&
+                 g->high[q] - g->low[q] <= smooth * (float)b->block_m && !runs_on(g, (size_t)((ptrdiff_t)c - d), c, p))
+            ends.kinks++;
+    }
+    return ends;
+}
+
+/* Gives up blocks taken back where what was taken back nearby ends otherwise than on ground. A hill that a square
+ * flattened ends on ground all around.
+ *
+ * Seats of a stadium, and embankments against a hall, end in drops. Seats on a bank of earth end where the next tier, a
+ * rim or a roof goes on with a kink or a step: a smooth surface, which a wooded top is not. Dams and the flat tops of
+ * banks have such ends too, so only what is higher over the widest opening than banks are built is given up: its foot
+ * stays ground. */
+static Status give_up_stands(Ground *g)
+{
+    const Blocks *b = &g->blocks;
+    const int     nx = b->nx, ny = b->ny, radius = blocks_in(b, 60);
+    const float   wide_m = (float)radius_m[scales - 1], few = (float)(40 / b->block_m);
+    float        *drops = g->work, *joins = g->opened, *kinks = g->high;
+    float        *line = malloc((size_t)(nx > ny ? nx : ny) * sizeof *line);
     if (!line) return STATUS_NO_MEMORY;
     memset(drops, 0, g->count * sizeof *drops), memset(joins, 0, g->count * sizeof *joins);
     for (int y = 2; y < ny - 2; y++)
         for (int x = 2; x < nx - 2; x++) {
             const size_t c = (size_t)y * (size_t)nx + (size_t)x;
             if (g->object[c] < 2) continue;
-            for (int k = 0; k < 4; k++) {
-                /* a wall's own block may hold both heights, so the comparison goes one block further */
-                const ptrdiff_t d = di[k] + (ptrdiff_t)dj[k] * nx;
-                const size_t    p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
-                if (g->low[p] == FLT_MAX || g->low[q] == FLT_MAX) continue;
-                if (g->object[p] == 0 && fabsf(g->low[c] - g->low[p]) <= step_m) joins[c] += 1;
-                else if (g->object[q] < 2 && g->low[c] - g->low[q] > wall_m + 2 * step_m * g->slope[c]) drops[c] += 1;
-            }
+            const Ends ends = ends_of(g, c);
+            joins[c] = (float)ends.joins, drops[c] = (float)(ends.drops + 8 * ends.kinks);
         }
+    for (size_t c = 0; c < g->count; c++) { /* the highest returns are no longer needed */
+        kinks[c] = floorf(drops[c] / 8);
+        drops[c] -= 8 * kinks[c];
+    }
     square_sums(drops, b, radius, line);
     square_sums(joins, b, radius, line);
-    for (size_t c = 0; c < g->count; c++)
-        if (g->object[c] >= 2 && drops[c] >= 6 && drops[c] > 0.15F * (drops[c] + joins[c])) g->object[c] = 1;
+    square_sums(kinks, b, radius, line);
+    for (size_t c = 0; c < g->count; c++) {
+        if (g->object[c] < 2) continue;
+        const float ends = drops[c] + kinks[c], over_m = g->low[c] - g->height[c];
+        const float ground_m = g->slope[c] > 0.05F ? wide_m * (g->slope[c] - 0.05F) : 0; /* by the slope alone */
+        const bool  stands = drops[c] >= 6 && drops[c] > many * (drops[c] + joins[c]) && over_m > wall_m;
+        const bool  tiers = ends >= few && ends > many * (ends + joins[c]) && over_m > bank_m + ground_m;
+        if (stands || tiers) g->object[c] = 1;
+    }
     for (size_t c = 0; c < g->count; c++) g->object[c] = g->object[c] == 1;
     free(line);
     return STATUS_OK;

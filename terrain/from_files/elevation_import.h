@@ -124,6 +124,10 @@ void             elevation_stream_level(StreamLevel *out, const ElevationStream 
  * the voids and samples of these rows are added to the report: true once for each row, from the south. */
 Status elevation_stream_heights(ElevationStream *stream, int row0, int rows, float *h_m, uint8_t *from_file,
                                 bool counted);
+/* The same, and what the nearest pixel of the files has, cell_m [rows][nx]: a surface model's walls are not smeared in
+ * it, and single returns from the ground among crowns are not lost. */
+Status elevation_stream_cells(ElevationStream *stream, int row0, int rows, float *h_m, float *cell_m,
+                              uint8_t *from_file);
 /* Converts rows to ENU z in place, and blends them into level 1 near the outline. */
 Status elevation_stream_bend(const ElevationStream *stream, int row0, int rows, float *h_m);
 /* Height of the surface of the levels from 1 on; 0 beyond them. */

@@ -35,6 +35,7 @@ typedef struct View {
     double     *n_m; /* [nodes] height of the geoid */
     Sight       sight[import_most_grids];
     RasterPatch patch[import_most_grids];
+    float      *cell_m; /* [rows][nx] gets what the nearest pixel has, above the ellipsoid; NULL: not wanted */
 } View;
 
 typedef struct Import {

@@ -128,8 +128,9 @@ bool view_window(RasterPatchWindow *out, const View *view, const Import *m, int 
 
 /* Height of one grid above the ellipsoid at a place in its pixels, and how far the place is beyond its outermost posts.
  * There the height is held at the edge, averaged ever more broadly. Returns false when the place is too far away to
- * count. */
-static bool grid_at(double *h_m, double *out_m, const Grid *g, const RasterPatch *patch, double x, double y, double n_m)
+ * count. nearest: of the nearest pixel alone. */
+static bool grid_at(double *h_m, double *out_m, const Grid *g, const RasterPatch *patch, double x, double y, double n_m,
+                    bool nearest)
 {
     if (patch->mips == 0 || !isfinite(x) || !isfinite(y)) return false;
     const double w = g->raster->width - 0.5, h = g->raster->height - 0.5;
@@ -143,6 +144,10 @@ static bool grid_at(double *h_m, double *out_m, const Grid *g, const RasterPatch
         if (*out_m >= g->long_m) return false;
         mip = log2((posting_m + 0.5 * *out_m) / (posting_m * patch->factor));
     }
+    if (nearest && *out_m == 0) {
+        x = patch->x0 + (floor((x - patch->x0) / patch->factor) + 0.5) * patch->factor;
+        y = patch->y0 + (floor((y - patch->y0) / patch->factor) + 0.5) * patch->factor;
+    }
     *h_m = raster_patch_at(patch, x, y, mip) * g->raster->metres_per_unit + (g->ellipsoidal ? 0 : n_m);
     return true;
 }
@@ -150,11 +155,12 @@ static bool grid_at(double *h_m, double *out_m, const Grid *g, const RasterPatch
 /* Height inside a hole of grid `at`: that of the next coarser grid at the place, and so on where that has a hole too.
  * Where there is no other grid, the hole's filling. */
 static double coarser_in_holes(const Import *m, const View *view, int at, double filled_m, const double *x,
-                               const double *y, double n_m)
+                               const double *y, double n_m, bool nearest)
 {
     double sum = 0, left = 1, h_m = filled_m, out_m = 0;
     for (int k = at; k < m->grids; k++) {
-        if (k > at && (!grid_at(&h_m, &out_m, &m->grid[k], &view->patch[k], x[k], y[k], n_m) || out_m > 0)) continue;
+        if (k > at && (!grid_at(&h_m, &out_m, &m->grid[k], &view->patch[k], x[k], y[k], n_m, nearest) || out_m > 0))
+            continue;
         const double inside = raster_patch_hole(&view->patch[k], x[k], y[k]);
         if (!(inside > 0)) return sum + left * h_m;
         sum += left * (1 - inside) * h_m;
@@ -165,16 +171,17 @@ static double coarser_in_holes(const Import *m, const View *view, int at, double
 
 /* Height of all grids together: the finest that holds the place, blended with finer ones near by. Between and beyond
  * all grids the nearest edges count most, and farther out the base height. */
-static double composed(const Import *m, const View *view, const double *x, const double *y, double n_m)
+static double composed(const Import *m, const View *view, const double *x, const double *y, double n_m, bool nearest)
 {
     double h_m[import_most_grids], out_m[import_most_grids], sum = 0, left = 1, weights = 0, cover = 0;
     int    at = 0;
     for (; at < m->grids; at++) {
-        if (!grid_at(&h_m[at], &out_m[at], &m->grid[at], &view->patch[at], x[at], y[at], n_m)) out_m[at] = INFINITY;
+        if (!grid_at(&h_m[at], &out_m[at], &m->grid[at], &view->patch[at], x[at], y[at], n_m, nearest))
+            out_m[at] = INFINITY;
         else if (out_m[at] == 0) break;
     }
     if (at < m->grids) {
-        if (view->patch[at].share) h_m[at] = coarser_in_holes(m, view, at, h_m[at], x, y, n_m);
+        if (view->patch[at].share) h_m[at] = coarser_in_holes(m, view, at, h_m[at], x, y, n_m, nearest);
         for (int k = 0; k < at; k++) {
             if (!(out_m[k] < m->grid[k].short_m)) continue;
             const double share = 1 - smooth_step(0, m->grid[k].short_m, out_m[k]);
@@ -207,7 +214,7 @@ static double height_at(const Import *m, const View *view, const double *x0, con
             x[k] = x0[k] + h_m * dx[k];
             y[k] = y0[k] + h_m * dy[k];
         }
-        const double next_m = composed(m, view, x, y, n_m), moved_px = fabs(next_m - h_m) * lean;
+        const double next_m = composed(m, view, x, y, n_m, false), moved_px = fabs(next_m - h_m) * lean;
         h_m = next_m;
         if (moved_px < 1e-4) break; /* of a pixel: a tenth of a millimetre on a slope of 1 at 1 m posts */
     }
@@ -220,9 +227,9 @@ static inline double mix(const double *v, int nx, double a, double b)
     return south + b * (north - south);
 }
 
-/* Heights of a run of posts in one row within one cell of the lattice, from all grids. */
-static double run_of_grids(float *h_m, const Import *m, const View *view, size_t node, double b, int from, int count,
-                           double guess_m)
+/* Heights of a run of posts in one row within one cell of the lattice, from all grids; cell_m: as View's. */
+static double run_of_grids(float *h_m, float *cell_m, const Import *m, const View *view, size_t node, double b,
+                           int from, int count, double guess_m)
 {
     const int nx = view->nodes_x;
     for (int i = 0; i < count; i++) {
@@ -239,14 +246,17 @@ static double run_of_grids(float *h_m, const Import *m, const View *view, size_t
         }
         guess_m = height_at(m, view, x0, y0, dx, dy, mix(view->n_m + node, nx, a, b), guess_m);
         h_m[i] = (float)guess_m;
+        if (!cell_m) continue;
+        for (int k = 0; k < m->grids; k++) x0[k] += guess_m * dx[k], y0[k] += guess_m * dy[k];
+        cell_m[i] = (float)composed(m, view, x0, y0, mix(view->n_m + node, nx, a, b), true);
     }
     return guess_m;
 }
 
 /* The same where only one grid has anything: its bilinear surface is evaluated directly. Several rows are computed at
  * once, since each post waits for the one before it. */
-static void run_of_one(float *h_m, const Import *m, const View *view, int grid, size_t node, const double *b, int from,
-                       int count, int rows, double *guess_m)
+static void run_of_one(float *h_m, float *cell_m, const Import *m, const View *view, int grid, size_t node,
+                       const double *b, int from, int count, int rows, double *guess_m)
 {
     const int          nx = view->nodes_x, level_nx = view->level.nx;
     const Sight       *s = &view->sight[grid];
@@ -287,7 +297,7 @@ static void run_of_one(float *h_m, const Import *m, const View *view, int grid, 
                     double at_x[import_most_grids] = {0}, at_y[import_most_grids] = {0};
                     at_x[grid] = x;
                     at_y[grid] = y;
-                    next_m = composed(m, view, at_x, at_y, n_m[r][i]);
+                    next_m = composed(m, view, at_x, at_y, n_m[r][i], false);
                 }
                 const double moved_px = fabs(next_m - h_of) * lean;
                 h_of = next_m;
@@ -295,6 +305,10 @@ static void run_of_one(float *h_m, const Import *m, const View *view, int grid, 
             }
             guess_m[r] = h_of;
             h_m[(size_t)r * (size_t)level_nx + (size_t)i] = (float)h_of;
+            if (!cell_m) continue;
+            double at_x[import_most_grids] = {0}, at_y[import_most_grids] = {0};
+            at_x[grid] = x0[r][i] + h_of * dx[r][i], at_y[grid] = y0[r][i] + h_of * dy[r][i];
+            cell_m[(size_t)r * (size_t)level_nx + (size_t)i] = (float)composed(m, view, at_x, at_y, n_m[r][i], true);
         }
 }
 
@@ -324,9 +338,10 @@ static void find_rows(void *user, int worker, int task)
             int          from = i % view->stride, count = view->stride - from;
             count = count < nx - i ? count : nx - i;
             count = count < most_run ? count : most_run;
-            float *to = f->h_m + (size_t)r * (size_t)nx + (size_t)i;
-            if (f->only >= 0) run_of_one(to, f->m, view, f->only, node, b, from, count, rows, guess_m);
-            else guess_m[0] = run_of_grids(to, f->m, view, node, b[0], from, count, guess_m[0]);
+            const size_t first = (size_t)r * (size_t)nx + (size_t)i;
+            float       *to = f->h_m + first, *cell = view->cell_m ? view->cell_m + first : NULL;
+            if (f->only >= 0) run_of_one(to, cell, f->m, view, f->only, node, b, from, count, rows, guess_m);
+            else guess_m[0] = run_of_grids(to, cell, f->m, view, node, b[0], from, count, guess_m[0]);
             i += count;
         }
     }

@@ -165,7 +165,8 @@ static void count_voids(ElevationStream *s, const View *view)
     free(seen);
 }
 
-Status elevation_stream_heights(ElevationStream *s, int row0, int rows, float *h_m, uint8_t *from_file, bool counted)
+static Status heights(ElevationStream *s, int row0, int rows, float *h_m, float *cell_m, uint8_t *from_file,
+                      bool counted)
 {
     Import   *m = &s->m;
     View      view = {0};
@@ -174,6 +175,7 @@ Status elevation_stream_heights(ElevationStream *s, int row0, int rows, float *h
     Status    status = view_create(&view, m, &m->level[0].z, row0, rows);
     for (int grid = 0; grid < m->grids && status == STATUS_OK; grid++)
         status = read_patch(&view, &borrowed[grid], s, grid);
+    view.cell_m = cell_m;
     if (status == STATUS_OK) status = view_heights(h_m, &view, m);
     if (status == STATUS_OK && from_file) mark(from_file, &view, m);
     const RasterPatch *patch = &view.patch[m->main];
@@ -188,6 +190,16 @@ Status elevation_stream_heights(ElevationStream *s, int row0, int rows, float *h
         if (borrowed[grid]) view.patch[grid] = (RasterPatch){0};
     view_free(&view);
     return status;
+}
+
+Status elevation_stream_heights(ElevationStream *s, int row0, int rows, float *h_m, uint8_t *from_file, bool counted)
+{
+    return heights(s, row0, rows, h_m, NULL, from_file, counted);
+}
+
+Status elevation_stream_cells(ElevationStream *s, int row0, int rows, float *h_m, float *cell_m, uint8_t *from_file)
+{
+    return heights(s, row0, rows, h_m, cell_m, from_file, false);
 }
 
 Status elevation_stream_bend(const ElevationStream *s, int row0, int rows, float *h_m)

@@ -12,10 +12,12 @@ typedef struct Work {
     int         row0, rows; /* rows that were asked for */
     int         r0, r1;     /* the same with margins */
     int         margin;
-    float   *surface_m, *bare_m, *plain_m; /* [r1 - r0][nx]; plain_m: bare ground of all posts, also beyond the data */
-    uint8_t *of_file;                      /* [r1 - r0][nx] */
-    uint8_t *rgb;                          /* [r1 - r0][nx][3]; NULL: none */
-    uint8_t *away;                         /* [r1 - r0][nx] distance from the data in posts, at most fade_posts */
+    float      *surface_m, *bare_m; /* [r1 - r0][nx] */
+    float *plain_m; /* [r1 - r0][nx] of all posts, also beyond the data: the terrain model, else the surface between
+                       its cells */
+    uint8_t      *of_file; /* [r1 - r0][nx] */
+    uint8_t      *rgb;     /* [r1 - r0][nx][3]; NULL: none */
+    uint8_t      *away;    /* [r1 - r0][nx] distance from the data in posts, at most fade_posts */
     SurfaceStrip *out;
     int           windows;
     Crown       **crown; /* [windows] */
@@ -72,6 +74,9 @@ static void keep_window(Work *w, const SurfaceParts *parts, int task, int i0, in
             double  h_m = (double)parts->bare_m[n];
             if (!isfinite(h_m)) h_m = (double)w->plain_m[src];
             const double canopy_m = (double)w->surface_m[src] - h_m;
+            /* what is ground has the height between its cells, but beside a wall or a crown */
+            if (!w->bare_m && parts->bare_m[n] == w->surface_m[src] && fabs((double)w->plain_m[src] - h_m) < 0.5 * s)
+                h_m = (double)w->plain_m[src];
             h_m += share * share * (3 - 2 * share) * ((double)w->plain_m[src] - h_m);
             const bool roof = kind == CELL_BUILDING && isfinite(parts->roof_m[n]);
             if (roof && !w->culture) h_m = (double)parts->roof_m[n];
@@ -166,8 +171,9 @@ static Status read_colours(Work *w, const SurfaceSources *from)
 /* Reads the heights of both models; NaN where a file has none. */
 static Status read_models(Work *w, const SurfaceSources *from)
 {
-    const int    rows = w->r1 - w->r0;
-    const size_t posts = (size_t)rows * (size_t)w->level.nx;
+    static const float smooth_m = 0.1F;
+    const int          rows = w->r1 - w->r0;
+    const size_t       posts = (size_t)rows * (size_t)w->level.nx;
     w->surface_m = malloc(posts * sizeof *w->surface_m);
     w->plain_m = malloc(posts * sizeof *w->plain_m);
     w->of_file = malloc(posts);
@@ -181,10 +187,16 @@ static Status read_models(Work *w, const SurfaceSources *from)
         for (size_t n = 0; n < posts; n++)
             if (w->of_file[n] != 1 && w->of_file[n] != 3) w->bare_m[n] = NAN;
     }
+    float *between_m = from->bare ? malloc(posts * sizeof *between_m) : w->plain_m;
+    if (!between_m) return STATUS_NO_MEMORY;
     if (status == STATUS_OK)
-        status = elevation_stream_heights(from->surface, w->r0, rows, w->surface_m, w->of_file, false);
+        status = elevation_stream_cells(from->surface, w->r0, rows, between_m, w->surface_m, w->of_file);
+    /* Between cells the surface is smooth on slopes of ground and roofs. Beside a wall, and where one return of many
+     * came from the ground below a crown, it is neither: there the nearest cell says what it is. */
+    for (size_t n = 0; n < posts && status == STATUS_OK; n++)
+        if (fabsf(between_m[n] - w->surface_m[n]) < smooth_m) w->surface_m[n] = between_m[n];
+    if (from->bare) free(between_m);
     if (status != STATUS_OK) return status;
-    if (!from->bare) memcpy(w->plain_m, w->surface_m, posts * sizeof *w->plain_m);
     const size_t first = (size_t)(w->row0 - w->r0) * (size_t)w->level.nx;
     const size_t end = first + (size_t)w->rows * (size_t)w->level.nx;
     for (size_t n = 0; n < posts; n++) {

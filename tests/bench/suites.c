@@ -136,6 +136,12 @@ static const BenchSuite suites[] = {
      .room = "sensor",
      .help = "frames of 10,000 houses and 5,000 cars and trailers beside the same without: set-up, memory, time, bits",
      .run = bench_town},
+    {.name = "town",
+     .room = "sensor",
+     .help = "towns of files, 10,000 and 200,000 buildings as GeoJSON, GeoPackage and Shapefile: to records; the first "
+             "with clutter to its first frame",
+     .run = bench_town_import,
+     .reads = "Buildings are read by a process of their own, whose time is in the wall's and not in the processor's."},
     {.name = "network",
      .room = "sensor",
      .help = "a live node, an exercise sent to it: what is lost, how late it is",

@@ -74,6 +74,7 @@ Status bench_speed_horizon(Bench *bench);     /* bending rays over the sea, the 
 Status bench_speed_radar(Bench *bench);       /* the radar with phase: targets by signatures, updates */
 Status bench_woods(Bench *bench);             /* woods_frames.c: frames of three million trees */
 Status bench_town(Bench *bench);              /* town.c: frames of 10,000 houses */
+Status bench_town_import(Bench *bench);       /* town_import.c: towns of files, to records and to a first frame */
 Status bench_woods_check(const Bench *bench); /* its options */
 Status bench_network_live(Bench *bench);      /* a live node, and a process that sends an exercise to it */
 Status bench_network_publish(Bench *bench);   /* shared memory and video of a live node, by its latency ledger */

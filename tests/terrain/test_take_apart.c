@@ -173,6 +173,63 @@ static void a_wide_roof_is_no_ground(void **state)
     site_free(&s);
 }
 
+/* Height of an arena over level ground by the distance from its middle: seats in two tiers with a step of 1.2 m between
+ * them rise from a field 45 m in radius to 22 m, a bank of earth falls outside from 21 m. */
+static double arena_m(double r_m)
+{
+    const double seats_m = r_m < 45 ? 0 : r_m < 84 ? 0.38 * (r_m - 45) : 16 + 0.55 * (r_m - 84);
+    return fmax(0, fmin(fmin(seats_m, 22), r_m < 100 ? 22 : 21 - 0.7 * (r_m - 100)));
+}
+
+static void tiers_on_a_bank_are_no_ground(void **state)
+{
+    (void)state;
+    Site s = site_make(400, 400, 1, level);
+    for (size_t c = 0; c < 400 * 400; c++)
+        s.surface_m[c] += (float)arena_m(hypot((double)(c % 400) + 0.5 - 200, (double)(c / 400) + 0.5 - 200));
+    site_run(&s);
+    /* what nothing tells from a bank of earth stays: the lowest 10 m of seats and bank */
+    double high = 0, left = 0;
+    for (size_t c = 0; c < 400 * 400; c++) {
+        if (!(s.surface_m[c] - s.truth_m[c] > 12)) continue;
+        high++, left += s.parts.bare_m[c] > s.surface_m[c] - 0.5F;
+    }
+    print_message("arena: of what is higher than 12 m %.3f is ground\n", left / high);
+    CHECK(left < 0.01 * high);
+    site_free(&s);
+}
+
+/* A dam of 8 m, its toe rounded, its top flat, and a knoll of 16 m and 80 m across whose top is wooded: both are
+ * ground. */
+static void banks_and_knolls_stay(void **state)
+{
+    (void)state;
+    Site s = site_make(420, 300, 1, level);
+    for (size_t c = 0; c < 420 * 300; c++) {
+        const double x = (double)(c % 420) + 0.5, y = (double)(c / 420) + 0.5, r = hypot(x - 290, y - 150) / 40;
+        const double toe_m = fmax(33 - fabs(x - 80), 0),
+                     dam_m = fmin(toe_m < 6 ? toe_m * toe_m / 30 : 0.4 * (toe_m - 3), 8),
+                     knoll_m = r < 1 ? 8 + 8 * cos(pi_rad * r) : 0;
+        s.truth_m[c] += (float)(dam_m + knoll_m), s.surface_m[c] += (float)(dam_m + knoll_m);
+    }
+    for (int k = 0; k < 90; k++) {
+        const double a = 2.4 * k, r = 15 * sqrt((k + 0.5) / 90);
+        add_tree(&s, 290 + r * cos(a), 150 + r * sin(a), 14 + k % 5, 2.5);
+    }
+    site_run(&s);
+    double flank[2] = {0}, kept[2] = {0};
+    for (size_t c = 0; c < 420 * 300; c++) {
+        const double x = (double)(c % 420) + 0.5, y = (double)(c / 420) + 0.5, r = hypot(x - 290, y - 150);
+        const int    of = fabs(x - 80) > 10 && fabs(x - 80) < 33 && y > 20 && y < 280 ? 0 : r > 18 && r < 40 ? 1 : -1;
+        if (of < 0 || s.kind[c] != CELL_BARE) continue;
+        flank[of]++, kept[of] += fabsf(s.parts.bare_m[c] - s.truth_m[c]) < 0.3F;
+    }
+    print_message("flanks that are ground: of the dam %.3f, of the knoll %.3f\n", kept[0] / flank[0],
+                  kept[1] / flank[1]);
+    CHECK(kept[0] > 0.95 * flank[0] && kept[1] > 0.95 * flank[1]);
+    site_free(&s);
+}
+
 static void a_forested_slope_keeps_its_slope(void **state)
 {
     (void)state;
@@ -271,7 +328,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bare_hills_and_terraces_stay), cmocka_unit_test(houses_and_trees_are_told_apart),
-        cmocka_unit_test(a_wide_roof_is_no_ground),     cmocka_unit_test(a_forested_slope_keeps_its_slope),
+        cmocka_unit_test(a_wide_roof_is_no_ground),     cmocka_unit_test(tiers_on_a_bank_are_no_ground),
+        cmocka_unit_test(banks_and_knolls_stay),        cmocka_unit_test(a_forested_slope_keeps_its_slope),
         cmocka_unit_test(overlapping_windows_agree),    cmocka_unit_test(odd_windows_are_survived),
         cmocka_unit_test(spikes_leave_no_mark),
     };

@@ -94,7 +94,7 @@ int main(int argc, char **argv)
     for (int s = 0; s < SURFACE_COUNT; s++) set_material(m, m->surface[s], ground_rho);
     for (int c = 0; c < optical_channel_count; c++) m->ground_rho[c] = ground_rho;
     const TownOf of = {.buildings = 1, .middle_enu = {51, 51}, .landscape = &w.landscape, .seed = 5};
-    ok = town_create(&scenery, &of) == STATUS_OK && world_scenery(&w.world, &scenery, NULL, w.pool) == STATUS_OK;
+    ok = town_create(&scenery, &of) == STATUS_OK;
     const double ground_m = elevation_height(&w.landscape.elevation, 0, 0, NULL);
     for (int k = 0; k < 3 && ok; k++) {
         const int row = materials_find(m, scenery.model[0].part[k].material);
@@ -102,6 +102,8 @@ int main(int argc, char **argv)
         if (ok) set_material(m, row, part_rho[k]);
         ok = ok && write_part(argv[1], &scenery.object[0], &scenery.model[0], k, ground_m);
     }
+    /* what shines on the ground about it is of the materials as they are when scenery joins the world */
+    ok = ok && world_scenery(&w.world, &scenery, NULL, w.pool) == STATUS_OK;
     ok = ok && draw(&w, argv[1], "direct.bin", ground_m, 0, 0);
     ok = ok && draw(&w, argv[1], "sampled.bin", ground_m, sky_w_m2_sr, 48);
     ok = ok && draw(&w, argv[1], "quick.bin", ground_m, sky_w_m2_sr, 0);
