@@ -70,7 +70,7 @@ typedef struct ClutterRow {
     char         paint[clutter_cell_octets]; /* materials of the part `body` and what shares its material; empty: own */
     ClutterWhere where;
     double       density;                         /* per km, yard or km2 */
-    double       reach_m; /* from the middle of the exercise; 0: everywhere */
+    double       reach_m;                         /* from the middle of the exercise; 0: everywhere */
     double       group_low, group_high, spread_m; /* things of a group, and their standard deviation about its middle */
     double       length_low_m, length_high_m;     /* of the shape; 0: its own */
     ClutterHeat  heat;

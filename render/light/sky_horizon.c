@@ -213,9 +213,8 @@ void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, cons
         if (hits->kind[i] != hit_ground && hits->kind[i] != hit_scenery) continue;
         const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
         const float z_m = (float)hits->p_enu[2][i];
-        const Seen  seen =
-            seen_at(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m, n, light, hits->kind[i] == hit_scenery);
-        float of[8], shade = 0;
+        const Seen seen = seen_at(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m, n, light, hits->kind[i] == hit_scenery);
+        float      of[8], shade = 0;
         if (hits->kind[i] == hit_scenery && seen.own_high_m > 0)
             shade = own_shade(light, &seen, n, z_m - ground_under(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m));
         if (seen.share == 1 && shade == 0) continue;

@@ -136,7 +136,7 @@ static void fill_cell(HorizonCell *out, const Making *m, int i, int j)
 static F32x8 tops_of(const Making *m, const float *here)
 {
     static const int32_t lane_number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const I32x8 lane = i32x8_mul(i32x8_load(lane_number), i32x8_set(m->fine));
+    const I32x8          lane = i32x8_mul(i32x8_load(lane_number), i32x8_set(m->fine));
     return f32x8_gather(here, lane);
 }
 
