@@ -272,7 +272,7 @@ static bool needs_models(const Scenario *s)
     for (int i = 0; i < s->group_count; i++)
         if (s->group[i].turret != SCENARIO_TURRET_NONE || s->group[i].hide != SCENARIO_HIDE_NONE || s->group[i].over)
             return true;
-    return s->ground.buildings; /* which make room for them */
+    return s->ground.planted && s->ground.buildings; /* which make room for them */
 }
 
 static Status fill(Cast *cast, int *ids, int *first, const HideJudge *judge)

@@ -138,7 +138,7 @@ enum {
         "height of the swells of synthetic ground, which are 0.4 to 0.6 km long") \
     ROW(BOOL, ground., planted, false, \
         "the synthetic ground and the plants of a node with terrain.place, of the same seed, on which entities can hide") \
-    ROW(BOOL, ground., buildings, false, \
+    ROW(BOOL, ground., buildings, true, \
         "of ground.planted: what is built on it too, as a node with terrain.buildings=invented has it") \
     ROW(LONG, ground., seed, 1, 0, 2147483647, "", "of ground.planted: the node's seed") \
     ROW(DOUBLE, ground., relief_m, 15, 0, 200, "m", "of ground.planted: the node's terrain.relief_m") \

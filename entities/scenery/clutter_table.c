@@ -72,7 +72,7 @@ Status clutter_table_read(ClutterTable *out, const char *path)
         {"heat", TABLE_CHOICE, FIELD(heat), .choices = "cold, engine, works, drives, lives, burns"},
         {"running", TABLE_DOUBLE, FIELD(running), .low = 0, .high = 1},
         {"recent", TABLE_DOUBLE, FIELD(recent), .low = 0, .high = 1},
-        {"reach_m", TABLE_DOUBLE, FIELD(reach_m), .low = 0, .high = 65536},
+        {"reach_m", TABLE_DOUBLE, FIELD(reach_m), .low = 0, .high = 65536, .absent = TABLE_LATER},
     };
     static const TableFormat format = {"clutter", columns, sizeof columns / sizeof *columns,
                                        "etc/clutter.csv explains the columns", .most_rows = clutter_most_rows};

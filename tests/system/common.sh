@@ -71,7 +71,9 @@ has_video() {
 # Most tests are of other things than plants, buildings and heat, which cost seconds a run: bare ground, warmed up in few steps,
 # unless their options say otherwise. Tests of heat or of radiances have $full in place of $bare.
 full=(--set terrain.woods=off --set terrain.buildings=off --set terrain.clutter=0)
-bare=("${full[@]}" --set heat.facets=3 --set heat.step_s=1800 --set heat.shadow_m=64 --set heat.vehicle_step_s=600)
+quickly=(--set heat.facets=3 --set heat.step_s=1800 --set heat.shadow_m=64 --set heat.vehicle_step_s=600)
+bare=("${full[@]}" "${quickly[@]}")
+built=(--set terrain.woods=off "${quickly[@]}") # in place of $bare: with the buildings and clutter of the settings
 # run ARGUMENTS: pitviper, with standard output, standard error and exit code in $tmp/stdout, $tmp/stderr, $code
 run() {
     case ${1:-} in replay|run) set -- "$1" "${bare[@]}" "${@:2}" ;; esac

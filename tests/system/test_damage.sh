@@ -3,6 +3,7 @@
 # entity's damage and is not drawn twice; from the time of the PDU on and not before, in replay and causal replay, with any
 # number of threads, and in a frame file; a house far off stays whole.
 . "$(dirname "$0")/common.sh"
+bare=("${built[@]}")
 judges python3.OpenEXR python3.numpy
 cat >"$tmp/s.yaml" <<'Y'
 duration_s: 8

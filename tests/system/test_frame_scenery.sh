@@ -3,6 +3,7 @@
 # their records, with trees of files; elsewhere, without those files and with other threads, it has the same bits. `explain`
 # says of a wall what it is, of what it is built, what is behind it; of clutter what heats it.
 . "$(dirname "$0")/common.sh"
+bare=("${built[@]}")
 judges python3.OpenEXR python3.numpy python3.PIL
 pitviper=$(realpath "$pitviper")
 judge() { python3 tests/system/explain_judge.py "$@"; }

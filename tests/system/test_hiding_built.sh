@@ -56,7 +56,7 @@ check "houses give way, and it is said" said 'buildings: [0-9]+ records are not 
 check "from above the tank is seen, whole, everywhere" is "$(grep -oE '"visible_fraction":[0-9.]+' "$tmp/d/truth.jsonl" | cut -d: -f2 | sort -n | head -n 1)" '>' 0.97
 replay "$tmp/drive.pcap" "$tmp/c" "${look[@]}" --causal --verbose
 check "a causal replay of it" [ "$code" = 0 ]
-gave() { grep -oE '"buildings":[0-9]+,"lines":[0-9]+' <<<"$(run_json "$1")" | head -n 1; }
+gave() { grep -oE '"buildings":[0-9]+,"damaged":[0-9]+,"lines":[0-9]+' <<<"$(run_json "$1")" | head -n 1; }
 check "which has the same buildings" [ -n "$(gave "$tmp/d")" ] 
 check "which has the same buildings: as many" [ "$(gave "$tmp/d")" = "$(gave "$tmp/c")" ]
 # a frame of it, made again from its file

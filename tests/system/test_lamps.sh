@@ -3,6 +3,7 @@
 # change none, a frame file has them, `explain` adds them up; run.json counts them; their spectra are those of CIE's illuminants
 # and of black bodies.
 . "$(dirname "$0")/common.sh"
+bare=("${built[@]}")
 judges python3.OpenEXR python3.numpy python3.PIL python3.colour
 
 # ---- spectra, by colour-science ------------------------------------------------------------------

@@ -3,7 +3,7 @@
 # those that the node had, though vehicles were reported later where it knew of none.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
-bare=("${bare[@]:2}") # with plants
+bare=("${quickly[@]}") # with plants and buildings
 
 # a truck drives past what the observer looks at, long after a node has chosen its ground; over waves that it does not know
 cat >"$tmp/later.yaml" <<'YAML'

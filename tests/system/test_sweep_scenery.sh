@@ -2,6 +2,7 @@
 # Buildings and clutter are a layer of the made world: variants of a sweep take it over, and make it again when the seed or
 # their settings change; each has the bits of a run alone. A live node's frames with them are those of its replay.
 . "$(dirname "$0")/common.sh"
+bare=("${built[@]}")
 . "$(dirname "$0")/live.sh"
 regress_case village
 quick=("${case_options[@]}" --set heat.facets=3 --set heat.step_s=3600 --set heat.shadow_m=64 --set terrain.detail=off
