@@ -10,6 +10,7 @@ enum { line_max = 40 };
 /* What to give each option that takes an argument, in every form that it has, other than its default. */
 static const char *const samples[][2] = {
     {"port", "3001"},
+    {"cigi", "127.0.0.1:8004"},
     {"out", "elsewhere"},
     {"bands", "lwir"},
     {"size", "64x48"},

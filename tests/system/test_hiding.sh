@@ -3,13 +3,14 @@
 # planned; a net covers. A sweep varies the scenario itself: types, seeds, places by name; it records each exercise once, and
 # keeps the ground from one to the next.
 . "$(dirname "$0")/common.sh"
-bare=(--set heat.facets=3 --set heat.step_s=3600 --set heat.shadow_m=0 --set terrain.detail=off "${coarse[@]}")
+bare=(--set heat.facets=3 --set heat.step_s=3600 --set heat.shadow_m=0 --set terrain.detail=off --set terrain.buildings=off
+    --set terrain.clutter=0 "${coarse[@]}") # buildings: test_hiding_built.sh
 
 cat >"$tmp/hide.yaml" <<'Y'
 duration_s: 6
 seed: 1
 place: {lat_deg: 50.1, lon_deg: 8.6, height_m: 120}
-ground: {planted: true, spacing_m: 30}
+ground: {planted: true, buildings: false, spacing_m: 30}
 vehicles:
   - {name: Tank, id: 11, type: 1.1.222.1.1.1.0, hide: tree-line, hide_m: 400, occlusion: 0.6, route_m: [[-400, -300]]}
   - {name: Truck, id: 21, type: 1.1.222.7.1.0.0, hide: hedge, hide_m: 400, occlusion: 0.3, route_m: [[300, -300]]}

@@ -5,10 +5,12 @@
 
 static const double clutter_half_m = 8000; /* half the width of a square with clutter, at most */
 
+static bool is_invented(const Config *config) { return strcmp(config->terrain.buildings, "invented") == 0; }
+
 /* What of the files lies in the square about the frame's origin that holds the asked one. */
 static Status read_files(Culture *out, const Config *config, const WoodsSquare *square, const Landscape *landscape)
 {
-    const bool         named = strcmp(config->terrain.buildings, "off") != 0;
+    const bool         named = strcmp(config->terrain.buildings, "off") != 0 && !is_invented(config);
     const CultureFiles from = {.buildings = named ? config->terrain.buildings : NULL,
                                .trees = config->terrain.trees,
                                .frame = &landscape->frame,
@@ -20,13 +22,27 @@ static Status read_files(Culture *out, const Config *config, const WoodsSquare *
     return culture_open(out, &report, &from);
 }
 
+/* Trees of a table beside what is invented: all of it is records then. */
+static Status add_trees(FrameScenery *out, SceneryPlan *plan, const Config *config, const WoodsSquare *square,
+                        const Landscape *landscape)
+{
+    Culture trees = {0};
+    if (plan->from != CULTURE_FROM_SEED || !*config->terrain.trees) return STATUS_OK;
+    Status status = read_files(&trees, config, square, landscape);
+    for (int k = 0; k < trees.trees && status == STATUS_OK; k++)
+        status = culture_add_tree(&out->culture, &trees.tree[k]);
+    culture_free(&trees);
+    plan->from = CULTURE_FROM_RECORDS;
+    return status;
+}
+
 static SceneryPlan plan_of(const Config *config, const WoodsSquare *square)
 {
     const double half_m = fmin(square->half_width_m, clutter_half_m);
     const bool   off = strcmp(config->terrain.buildings, "off") == 0 && !*config->terrain.trees;
-    SceneryPlan  plan = {.from = strcmp(config->terrain.buildings, "invented") == 0 ? CULTURE_FROM_SEED
-                                 : off                                              ? CULTURE_FROM_NOTHING
-                                                                                    : CULTURE_FROM_RECORDS,
+    SceneryPlan  plan = {.from = is_invented(config) ? CULTURE_FROM_SEED
+                                 : off               ? CULTURE_FROM_NOTHING
+                                                     : CULTURE_FROM_RECORDS,
                          .invented = {.seed = (uint64_t)config->seed,
                                       .centre_m = {square->centre_m[0], square->centre_m[1]},
                                       .half_width_m = square->half_width_m},
@@ -46,22 +62,21 @@ static void report(Choices *choices, const FrameScenery *s, const Config *config
 {
     SceneryCounts n;
     frame_scenery_count(&n, s);
-    if (s->plan.from == CULTURE_FROM_RECORDS)
+    if (s->plan.from == CULTURE_FROM_RECORDS && !is_invented(config))
         choice_add(choices,
                    "buildings: %d from files, %d lines, %d other works, %d trees (terrain.buildings, "
                    "terrain.trees)",
                    n.buildings, n.lines, n.points, n.trees);
-    else if (s->plan.from == CULTURE_FROM_SEED && landscape_is_synthetic(landscape))
+    else if (is_invented(config) && landscape_is_synthetic(landscape))
         choice_add(choices, "buildings: %d invented, %d walls, fences and lines, %d other works (terrain.buildings)",
                    n.buildings, n.lines, n.points);
     if (s->gave_way > 0)
         choice_add(choices,
                    "buildings: %d records are not there for what the log's vehicles drive through (terrain.place)",
                    s->gave_way);
-    if (s->plan.from == CULTURE_FROM_SEED && !landscape_is_synthetic(landscape))
+    if (is_invented(config) && !landscape_is_synthetic(landscape))
         choice_add(choices, "buildings: none are invented on terrain from files (terrain.buildings)");
-    if (s->plan.from == CULTURE_FROM_SEED && *config->terrain.trees)
-        choice_add(choices, "trees: terrain.trees is not read with terrain.buildings=invented; name files, or off");
+    if (is_invented(config) && n.trees > 0) choice_add(choices, "trees: %d of a table (terrain.trees)", n.trees);
     if (s->plan.clutter > 0)
         choice_add(choices, "clutter: %d things, %d of them driving, within %.1f km (terrain.clutter)", n.clutter,
                    n.driving, 0.5e-3 * (s->plan.north_east_m[0] - s->plan.south_west_m[0]));
@@ -84,6 +99,7 @@ Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *ba
     if (status == STATUS_OK && basis->evidence && (plan.from == CULTURE_FROM_SEED || plan.clutter > 0))
         status = choice_driven(&out->driven, &out->drivens, basis, square, landscape);
     if (status == STATUS_OK) status = frame_scenery_culture(out, &plan, landscape);
+    if (status == STATUS_OK) status = add_trees(out, &plan, basis->config, square, landscape);
     if (status == STATUS_OK) status = choice_harm(&plan, &out->culture, basis, &landscape->frame);
     if (status == STATUS_OK) status = frame_scenery_make(out, &plan, landscape);
     if (status != STATUS_OK)
