@@ -43,6 +43,7 @@ struct Run {
     void            *user;  /* passed to these five */
     FrameClock      *clock; /* the command's, of `frames`; NULL where none are made */
     struct CigiNode *cigi;  /* SessionShared.cigi; the command's */
+    struct FlightLoop *flight; /* SessionShared.flight; likewise */
 };
 
 /* Where settings are chosen for a frame time: how fast this machine is, into quality.machine_factor, and among the

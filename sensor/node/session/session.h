@@ -45,6 +45,7 @@ typedef struct SessionShared {
      * user: as above. */
     unsigned (*choose)(void *user, const FrameTime *frame);
     struct CigiNode *cigi;    /* a host that gives time and eye, frame by frame, and waits for each; NULL: none */
+    struct FlightLoop *flight; /* a missile whose seeker this is, flown by what is seen of the frames; NULL: none */
     bool             several; /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 
