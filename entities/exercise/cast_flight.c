@@ -161,7 +161,7 @@ Status cast_take_flight(Cast *cast, const CastFlown *flown)
     f->miss_m = flown->miss_m;
     f->flight_s = flown->impact_s - round->fire_s;
     round->impact_s = flown->impact_s;
-    round->result = flown->hit                      ? dis_result_entity_impact
+    round->result = flown->hit                        ? dis_result_entity_impact
                     : flown->end == FLIGHT_END_GROUND ? dis_result_ground_impact
                                                       : dis_result_none;
     enu_from_ecef(round->impact_enu, &cast->ground.frame, flown->impact_ecef);

@@ -203,7 +203,7 @@ void   cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *roun
 Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double at_enu[3]);
 /* What a hit does to the round's target. entities/exercise/cast_shots.c */
 void cast_damage(Cast *cast, const CastRound *round);
-void   cast_flight_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);
+void cast_flight_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);
 /* Whether an entity is a munition that flew so. */
 static inline bool cast_is_flown(const Cast *cast, int entity)
 {

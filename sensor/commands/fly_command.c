@@ -1,5 +1,5 @@
-/* sensor/commands/fly_command.c: `pitviper fly`: flies the missiles of a scenario with true sight, or one by what is seen
- * in its own frames: a table of how close they came, over seeds, and a recording of one. */
+/* sensor/commands/fly_command.c: `pitviper fly`: flies the missiles of a scenario with true sight, or one by what is
+ * seen in its own frames: a table of how close they came, over seeds, and a recording of one. */
 #include "sensor/commands/commands.h"
 #include "pitviper_output.h"
 
@@ -334,7 +334,7 @@ static Status fly(Scenario *scenario, const Options *o)
     Status      status = misses ? plant_judge_create(&judge, "avx2") : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         const HideJudge hide = plant_judge_hide(judge);
-        const bool loop = fly_loop_asked(&o->loop);
+        const bool      loop = fly_loop_asked(&o->loop);
         printf("seed,round,munition,missile,fire_s,flight_s,hit,end,miss_m,end_mps,most_lateral_mps2,guided_share%s\n",
                loop ? ",frames,seen,empty,outside,none,late" : "");
         for (int i = 0; i < o->seeds && status == STATUS_OK && !stop_asked(); i++, scenario->seed++)

@@ -104,10 +104,11 @@ static Status node_options(Options *out, Flying *f, const Cast *cast)
     if (stop) return STATUS_BAD_VALUE;
     out->log = f->log; /* options_parse may keep pointers into argv, which is gone soon */
     out->out = f->out;
-    if (out->sweep || out->host_count > 0 || out->only_count > 0 || isfinite(out->speed) || *out->config.exercise.cigi ||
-        out->config.exercise.causal) {
-        log_error("fly: options of the frames (after --): without --sweep, --host, --only, --speed, --cigi, --causal: the "
-                  "missile is the host, and its flight the clock");
+    if (out->sweep || out->host_count > 0 || out->only_count > 0 || isfinite(out->speed) ||
+        *out->config.exercise.cigi || out->config.exercise.causal) {
+        log_error(
+            "fly: options of the frames (after --): without --sweep, --host, --only, --speed, --cigi, --causal: the "
+            "missile is the host, and its flight the clock");
         return STATUS_BAD_VALUE;
     }
     if (o->recogniser && !o->sights && !out->config.publish.detections_port) {
@@ -196,10 +197,10 @@ static DisEntityId id_of(const Cast *cast, int entity)
 
 static Status begin(FlightLoop *loop, const Cast *cast, const FlyLoop *o)
 {
-    static const double   memory = 0.6; /* of the filter, where the shot says none */
-    const CastFlight     *flight = &cast->flight[0];
-    const CastRound      *round = &cast->round[flight->round];
-    const ScenarioShot   *shot = &cast->scenario->shot[round->shot];
+    static const double memory = 0.6; /* of the filter, where the shot says none */
+    const CastFlight   *flight = &cast->flight[0];
+    const CastRound    *round = &cast->round[flight->round];
+    const ScenarioShot *shot = &cast->scenario->shot[round->shot];
     if (round->munition < 0 || round->target < 0) {
         log_error("fly: %s:%d: in a loop with frames a shot is at an entity, and its munition is one (at, entity)",
                   cast->scenario->path, shot->line);
@@ -232,7 +233,8 @@ static Status conclude(FlyLoopCounts *counts, Cast *cast, const FlightLoop *loop
                              .miss_m = loop->miss.least_m};
     flight->end_mps = v3_length(loop->state.v_ecef_mps);
     flight->most_lateral_mps2 = loop->most_lateral_mps2;
-    flight->guided_share = (double)loop->guided / (double)(loop->guided + loop->coasted + !(loop->guided + loop->coasted));
+    flight->guided_share =
+        (double)loop->guided / (double)(loop->guided + loop->coasted + !(loop->guided + loop->coasted));
     *counts = (FlyLoopCounts){.frames = loop->frames, .late = loop->late};
     memcpy(counts->verdicts, loop->verdicts, sizeof counts->verdicts);
     return cast_take_flight(cast, &flown);

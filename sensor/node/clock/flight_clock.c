@@ -24,8 +24,9 @@ Status flight_clock_begin(FlightClock *c, const FrameGrid *grid)
     c->grid = *grid;
     c->next = (int)fmax(0, ceil(launch_s * grid->rate_hz - 1e-6) - grid->origin);
     if (c->loop->late_s * grid->rate_hz < loop_waiting_most / 2) return STATUS_OK;
-    log_error("fly: %g frames a second, answered %g s late (sight_late_s), are more on their way than %d; choose a lower "
-              "--rate",
-              grid->rate_hz, c->loop->late_s, loop_waiting_most / 2);
+    log_error(
+        "fly: %g frames a second, answered %g s late (sight_late_s), are more on their way than %d; choose a lower "
+        "--rate",
+        grid->rate_hz, c->loop->late_s, loop_waiting_most / 2);
     return STATUS_BAD_VALUE;
 }

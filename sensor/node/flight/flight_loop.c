@@ -133,8 +133,8 @@ void flight_loop_tick(FlightLoop *l, const LoopScene *scene, double t_s, const d
         const bool known = target_ecef && l->target_known;
         for (int e = 0; e < 2 && known; e++) /* between two ticks the target moves straight */
             for (int k = 0; k < 3; k++)
-                ends[e][k] = l->target_ecef[k] + (target_ecef[k] - l->target_ecef[k]) *
-                                                     (double)(before.tick + e - from) / loop_tick_ms;
+                ends[e][k] = l->target_ecef[k] +
+                             (target_ecef[k] - l->target_ecef[k]) * (double)(before.tick + e - from) / loop_tick_ms;
         meet(l, scene, &before, known ? ends[0] : NULL, known ? ends[1] : NULL);
     }
     l->target_known = target_ecef != NULL;

@@ -1,8 +1,8 @@
 /* sensor/node/flight/flight_loop.h: a missile that flies by what is seen in the frames of its own seeker, in lockstep.
  *
  * The missile is the session's host: sensor/node/session/host_flight.c steps it on the session's grid of 10 ms, ten
- * steps of 1 ms each, and gives each frame the eye at its time. What was seen in a frame becomes a line of sight through
- * the camera of that frame (loop_sights.c) and guides from late_s after the frame's time on. The clock
+ * steps of 1 ms each, and gives each frame the eye at its time. What was seen in a frame becomes a line of sight
+ * through the camera of that frame (loop_sights.c) and guides from late_s after the frame's time on. The clock
  * (sensor/node/clock/flight_clock.h) makes no frame before every sight is known that guides before it, so the flight
  * follows from the answers alone, not from when they came: the wall clock decides only whether an answer counts as
  * missing. Times are exercise time, s; ticks count its milliseconds. */
@@ -89,22 +89,22 @@ typedef struct FlightLoop {
     bool         hit;
     Miss         miss;
     double       most_lateral_mps2;
-    int64_t      guided, coasted;                               /* steps */
-    double       target_ecef[3];                                /* at the last tick; valid if target_known */
+    int64_t      guided, coasted; /* steps */
+    double       target_ecef[3];  /* at the last tick; valid if target_known */
     bool         target_known;
     FlightState *track; /* [track_count], each tick of 10 ms from the launch on */
     int          track_count, track_room;
     /* ---- sights */
-    LoopCamera eye; /* of the last frame */
-    LoopFrame  waiting[loop_waiting_most];
-    int        first, count, frames;
-    LoopUsable usable[loop_waiting_most]; /* a ring: the newest is usable[(usable_count - 1) % most] */
-    int64_t    usable_count;
+    LoopCamera  eye; /* of the last frame */
+    LoopFrame   waiting[loop_waiting_most];
+    int         first, count, frames;
+    LoopUsable  usable[loop_waiting_most]; /* a ring: the newest is usable[(usable_count - 1) % most] */
+    int64_t     usable_count;
     SightFilter filter;
-    LoopRow   *row; /* [row_count], read for LOOP_RECORDED, else written */
-    int        row_count, row_room;
-    int        verdicts[loop_verdict_count];
-    double     gone_s; /* wall clock; 0: it has not ended */
+    LoopRow    *row; /* [row_count], read for LOOP_RECORDED, else written */
+    int         row_count, row_room;
+    int         verdicts[loop_verdict_count];
+    double      gone_s; /* wall clock; 0: it has not ended */
     /* ---- shared with the thread that receives answers */
     pthread_mutex_t lock;
     pthread_cond_t  arrived;

@@ -1,5 +1,5 @@
-/* sensor/node/flight/loop_sights.c: from answers to lines of sight: which detection, through which camera, from when on;
- * and the recording of them by which a flight is flown again. */
+/* sensor/node/flight/loop_sights.c: from answers to lines of sight: which detection, through which camera, from when
+ * on; and the recording of them by which a flight is flown again. */
 #include "sensor/node/flight/flight_loop.h"
 
 #include "pitviper_output.h"
@@ -37,8 +37,7 @@ void loop_sights_taken(void *user, const Answer *answer)
         in->frame = answer->frame;
         in->count = 0;
         for (int i = 0; i < answer->count; i++)
-            if (point_of(in->px[in->count], &answer->detection[i]))
-                in->score[in->count++] = answer->detection[i].score;
+            if (point_of(in->px[in->count], &answer->detection[i])) in->score[in->count++] = answer->detection[i].score;
         pthread_cond_signal(&l->arrived);
     }
     pthread_mutex_unlock(&l->lock);
@@ -125,8 +124,8 @@ static void guide_truly(FlightLoop *l, const LoopCamera *c)
 {
     static const double unknown[3] = {NAN, NAN, NAN};
     FlightSight         sight;
-    if (c->target_known && flight_sight_true(&sight, c->t_s, c->p_ecef, c->v_ecef_mps, c->target_ecef,
-                                             c->target_v_ecef_mps, unknown))
+    if (c->target_known &&
+        flight_sight_true(&sight, c->t_s, c->p_ecef, c->v_ecef_mps, c->target_ecef, c->target_v_ecef_mps, unknown))
         push(l, &sight);
 }
 
@@ -271,7 +270,8 @@ Status loop_sights_read(FlightLoop *l, const char *path)
          .otherwise = NAN},
         {"row_px", TABLE_DOUBLE, TABLE_AT(LoopRow, px[1]), .low = -1e6, .high = 1e6, .absent = TABLE_EMPTY,
          .otherwise = NAN}};
-    static const TableFormat format = {"fly", columns, 4, "`pitviper fly --frames DIR` writes one, DIR/sights.csv", .most_rows = 1000000};
+    static const TableFormat format = {"fly", columns, 4, "`pitviper fly --frames DIR` writes one, DIR/sights.csv",
+                                       .most_rows = 1000000};
     LoopRow                  row;
     return table_each(&format, path, &row, sizeof row, take_row, l);
 }

@@ -1,4 +1,5 @@
-/* sensor/node/flight/recogniser.h: a recogniser as a child of this process, by a shell, in a process group of its own. */
+/* sensor/node/flight/recogniser.h: a recogniser as a child of this process, by a shell, in a process group of its own.
+ */
 #ifndef SENSOR_NODE_FLIGHT_RECOGNISER_H
 #define SENSOR_NODE_FLIGHT_RECOGNISER_H
 
@@ -13,7 +14,8 @@ typedef struct Recogniser {
 } Recogniser;
 
 /* command: for /bin/sh; its standard output goes to standard error. In its environment are PITVIPER_MEMORY, the name of
- * the ring of frames, PITVIPER_PORT, that answers go to, and PITVIPER_OUT, the folder of the frames. STATUS_IO, logged. */
+ * the ring of frames, PITVIPER_PORT, that answers go to, and PITVIPER_OUT, the folder of the frames. STATUS_IO, logged.
+ */
 Status recogniser_start(Recogniser *out, const char *command, const char *memory, int port, const char *folder);
 /* Whether it has ended; said once, by user: a Recogniser. */
 bool recogniser_gone(void *user);

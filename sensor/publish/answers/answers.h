@@ -43,7 +43,7 @@ bool answers_latest(Answers *answers, Band band, Answer *out);
 /* From now on each answer that is taken, complete, is told as it arrives, in the thread that receives. Call it once,
  * before the first frame. */
 typedef void AnswersTaken(void *user, const Answer *answer);
-void answers_watch(Answers *answers, AnswersTaken *taken, void *user);
+void         answers_watch(Answers *answers, AnswersTaken *taken, void *user);
 /* So far. */
 void answers_counters(Answers *answers, AnswerCounters *out);
 
