@@ -19,6 +19,7 @@ check "when the flight without frames does: $(cell ideal flight_s) and $(cell fr
 check "a frame each 0.1 s of 3.5 s" [ "$(cell ideal frames)" = 36 ]
 check "as many lines of truth" [ "$(lines_in "$tmp/ideal/truth.jsonl")" = 36 ]
 check "by the missile's eye" [ "$(host_of "$tmp/ideal")" = 1:3001:41 ]
+check "truth says so, too" [ "$(grep -c '"host":{"entity":"1:3001:41"' "$tmp/ideal/truth.jsonl")" = 36 ]
 
 # ---- a recogniser that knows the target's line of sight
 loop known --frames "$tmp/known" --recogniser "$knows" -o "$tmp/known.pcap"
