@@ -9,6 +9,7 @@
 #include "entities/flight/engagement.h"
 #include "sensor/commands/exercise_scenario_private.h"
 #include "sensor/commands/fly_loop_private.h"
+#include "sensor/commands/fly_plot_private.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/commands/plant_judge.h"
 #include "sensor/node/run/stop.h"
@@ -19,7 +20,7 @@
 enum { max_sets = 256, max_seeds = 10000, max_misses = 100000 };
 
 typedef struct Options {
-    const char *scenario, *out, *missile;
+    const char *scenario, *out, *missile, *plot;
     bool        overwrite;
     int         seeds, set_count;
     const char *set[max_sets];
@@ -40,6 +41,7 @@ static const char help[] =
     "  --missile ROW        all shots whose munitions are entities, and that name no other row, fly by this row\n"
     "  --seeds N            the scenario's seed and the N - 1 after it; then the circular error probable (CEP): the median\n"
     "                       of the closest approaches, with its 95 % interval by order statistics, 6 flights or more\n"
+    "  --plot FILE          paths of the flights (the first 100) as SVG, from the side and from above\n"
     "  --set KEY=VALUE      one key of the scenario, such as seed=7; may be repeated; shots.NAME.KEY=VALUE is of all "
     "shots\n"
     "                       whose munition has that name: sight_every_s, sight_late_s, sight_error_m, hit_m ...\n"
@@ -87,12 +89,26 @@ static int parse_wrong(const Options *o)
 /* Returns 0 to go on; else the program exits with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
-    enum { OUT = 'o', HELP = 'h', SET = 256, OVERWRITE, MISSILE, SEEDS, FRAMES, RECOGNISER, LIMIT, START, SIGHTS };
+    enum {
+        OUT = 'o',
+        HELP = 'h',
+        SET = 256,
+        OVERWRITE,
+        MISSILE,
+        SEEDS,
+        FRAMES,
+        RECOGNISER,
+        LIMIT,
+        START,
+        SIGHTS,
+        PLOT
+    };
     static const struct option options[] = {{"out", 1, NULL, OUT},
                                             {"overwrite", 0, NULL, OVERWRITE},
                                             {"missile", 1, NULL, MISSILE},
                                             {"seeds", 1, NULL, SEEDS},
                                             {"set", 1, NULL, SET},
+                                            {"plot", 1, NULL, PLOT},
                                             {"frames", 1, NULL, FRAMES},
                                             {"recogniser", 1, NULL, RECOGNISER},
                                             {"limit", 1, NULL, LIMIT},
@@ -128,6 +144,9 @@ static int parse(Options *o, int argc, char **argv)
             ok = o->set_count < max_sets;
             if (ok) o->set[o->set_count++] = optarg;
             else log_error("fly: more than %d of --set", max_sets);
+            break;
+        case PLOT:
+            o->plot = optarg;
             break;
         case FRAMES:
             o->loop.frames = optarg;
@@ -249,11 +268,18 @@ static Status record(const Cast *cast, const Options *o)
     return status;
 }
 
-/* Closest approaches so far. */
+/* Closest approaches, and paths, so far. */
 typedef struct Misses {
-    int    count;
-    double miss_m[max_misses];
+    int      count;
+    double   miss_m[max_misses];
+    FlyPaths paths;
 } Misses;
+
+static void take(Misses *misses, const Cast *cast, const CastFlight *flight, const Options *o)
+{
+    if (misses->count < max_misses) misses->miss_m[misses->count++] = flight->miss_m;
+    if (o->plot) fly_paths_take(&misses->paths, cast, flight);
+}
 
 /* One missile, by what is seen in its frames. */
 static Status fly_in_loop(Misses *misses, Scenario *scenario, const HideJudge *hide, const Options *o)
@@ -266,7 +292,7 @@ static Status fly_in_loop(Misses *misses, Scenario *scenario, const HideJudge *h
     if (status == STATUS_OK && !stop_asked()) {
         print_row(cast, &cast->flight[0], &counts);
         fflush(stdout);
-        if (misses->count < max_misses) misses->miss_m[misses->count++] = cast->flight[0].miss_m;
+        take(misses, cast, &cast->flight[0], o);
         if (o->out) status = record(cast, o);
     }
     cast_destroy(cast);
@@ -288,7 +314,7 @@ static Status fly_seed(Misses *misses, const Scenario *scenario, const HideJudge
     }
     for (int i = 0; status == STATUS_OK && i < cast->flight_count; i++) {
         print_row(cast, &cast->flight[i], NULL);
-        if (misses->count < max_misses) misses->miss_m[misses->count++] = cast->flight[i].miss_m;
+        take(misses, cast, &cast->flight[i], o);
     }
     if (status == STATUS_OK && o->out) status = record(cast, o);
     cast_destroy(cast);
@@ -344,6 +370,7 @@ static Status fly(Scenario *scenario, const Options *o)
             status = STATUS_IO;
         }
         if (status == STATUS_OK && misses->count > 1) print_cep(misses);
+        if (status == STATUS_OK && o->plot) status = fly_paths_write(&misses->paths, o->plot, o->scenario);
     }
     plant_judge_destroy(judge);
     free(misses);
@@ -381,6 +408,7 @@ int fly_command(int argc, char **argv)
     stop_by_signals();
     if (fly_loop_asked(&o.loop)) thread_flush_denormals();
     status = fly_by(&scenario, &o);
+    if (status == STATUS_OK && o.plot) status = overwrite_file("fly", o.plot, o.overwrite);
     if (status == STATUS_OK) status = fly(&scenario, &o);
     if (status == STATUS_NO_MEMORY) log_error("fly: out of memory");
     scenario_destroy(&scenario);

@@ -23,7 +23,8 @@ static const void *the_host(FieldAt *at, int i)
     const FrameRecord *r = at->of;
     Host              *host = (Host *)at->room;
     (void)i;
-    *host = (Host){.entity = r->host, .flown = r->host_id, .speed_mps = v3_length(r->host ? r->host->v_ecef_mps : r->v_eye_mps)};
+    *host = (Host){
+        .entity = r->host, .flown = r->host_id, .speed_mps = v3_length(r->host ? r->host->v_ecef_mps : r->v_eye_mps)};
     memcpy(host->p_ecef, r->p_eye_ecef, sizeof host->p_ecef);
     if (geodetic_from_ecef(&host->place, r->p_eye_ecef) != STATUS_OK) host->place = (Geodetic){NAN, NAN, NAN};
     euler_from_r_ecef_from_body(&host->psi_rad, &host->theta_rad, &host->phi_rad, r->r_ecef_from_body);
