@@ -61,10 +61,10 @@ static void plot(FILE *to, const FlyPaths *paths, const char *scenario)
         stretch(above, p->above_m, p->points);
         hits += p->hit;
     }
+    if (along[0] > -1) along[0] = 0; /* rounding */
     const SvgAxis x = svg_linear_axis(along[0], along[1], side.left, side.right),
                   high = svg_linear_axis(above[0], above[1], side.bottom, side.top),
                   wide = svg_linear_axis(right[0], right[1], plan.top, plan.bottom);
-    if (along[0] > -1) along[0] = 0; /* rounding */
     snprintf(about, sizeof about, ": paths of %d flights, %d hits", paths->count, hits);
     svg_begin(to, width_px, height_px, scenario, about,
               "from the side, and from above; height, deviation and way have scales of their own");
