@@ -302,11 +302,12 @@ static Status fill(Cast *cast, int *ids, int *first, const HideJudge *judge)
 
 Status cast_create(Cast **out, const Scenario *scenario) { return cast_create_judged(out, scenario, NULL); }
 
-Status cast_create_judged(Cast **out, const Scenario *scenario, const HideJudge *judge)
+static Status create(Cast **out, const Scenario *scenario, const HideJudge *judge, bool held)
 {
     Cast *cast = calloc(1, sizeof *cast);
     if (!cast) return STATUS_NO_MEMORY;
     cast->scenario = scenario;
+    cast->held = held;
     for (int i = 0; i < scenario->group_count; i++)
         cast->entity_count += scenario_group_size(scenario, &scenario->group[i]);
     for (int i = 0; i < scenario->shot_count; i++) {
@@ -330,6 +331,16 @@ Status cast_create_judged(Cast **out, const Scenario *scenario, const HideJudge 
     if (status == STATUS_OK) *out = cast;
     else cast_destroy(cast);
     return status;
+}
+
+Status cast_create_judged(Cast **out, const Scenario *scenario, const HideJudge *judge)
+{
+    return create(out, scenario, judge, false);
+}
+
+Status cast_create_held(Cast **out, const Scenario *scenario, const HideJudge *judge)
+{
+    return create(out, scenario, judge, true);
 }
 
 void cast_destroy(Cast *cast)

@@ -129,6 +129,46 @@ static void sight_error(double out_ecef[3], const Cast *cast, int round, const d
     v3_add_scaled(out_ecef, out_ecef, sigma_m * random_normal(seed, 11, (uint32_t)round, 1), above);
 }
 
+/* Fired, at its target, and nothing more. */
+static Status hold(Cast *cast, CastRound *round, Scene *scene, const double at_enu[3])
+{
+    CastFlight       *f = scene->out;
+    const FlightWorld world = flight_world();
+    FlightState       state;
+    flight_launch(&state, &f->missile, &world, f->tick, f->p_ecef, f->v_ecef_mps);
+    keep_sample(scene, &state);
+    if (scene->no_memory) return STATUS_NO_MEMORY;
+    round->impact_s = INFINITY;
+    round->result = dis_result_none;
+    memcpy(round->impact_enu, at_enu, sizeof round->impact_enu);
+    round->flight = cast->flight_count++;
+    return STATUS_OK;
+}
+
+Status cast_take_flight(Cast *cast, const CastFlown *flown)
+{
+    CastFlight *f = &cast->flight[0];
+    CastRound  *round = &cast->round[f->round];
+    Scene       scene = {.cast = cast, .out = f};
+    free(f->sample);
+    f->sample = NULL;
+    f->samples = 0;
+    for (int i = 0; i < flown->states; i++) keep_sample(&scene, &flown->state[i]);
+    if (scene.no_memory) return STATUS_NO_MEMORY;
+    cast->held = false;
+    f->hit = flown->hit;
+    f->end = flown->end;
+    f->miss_m = flown->miss_m;
+    f->flight_s = flown->impact_s - round->fire_s;
+    round->impact_s = flown->impact_s;
+    round->result = flown->hit                        ? dis_result_entity_impact
+                    : flown->end == FLIGHT_END_GROUND ? dis_result_ground_impact
+                                                      : dis_result_none;
+    enu_from_ecef(round->impact_enu, &cast->ground.frame, flown->impact_ecef);
+    if (flown->hit && round->target >= 0) cast_damage(cast, round);
+    return STATUS_OK;
+}
+
 Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double at_enu[3])
 {
     const ScenarioShot   *shot = &cast->scenario->shot[round->shot];
@@ -142,6 +182,12 @@ Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double a
     EngagementResult      r;
     double                v[3], a[3], target[3], line[3];
     *f = (CastFlight){.round = number};
+    if (cast->held && m.guidance == MISSILE_COMMAND) {
+        log_error("scenario: %s:%d: shots: %s is commanded from its launcher and has no seeker, whose frames could "
+                  "guide it",
+                  cast->scenario->path, shot->line, m.name);
+        return STATUS_BAD_VALUE;
+    }
     ecef_from_enu(scene.at_ecef, frame, at_enu);
     m.fuze_m = round->target < 0 ? 0 : fmax(m.fuze_m, shot->hit_m);
     Engagement e = {.tick = llround(round->fire_s / world.step_s),
@@ -161,6 +207,11 @@ Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double a
     target_at(target, v, a, &scene, round->fire_s);
     v3_sub(line, target, e.p_ecef);
     sight_error(e.aim_ecef, cast, number, line, shot->sight_error_m);
+    f->missile = m;
+    f->tick = e.tick;
+    memcpy(f->p_ecef, e.p_ecef, sizeof f->p_ecef);
+    memcpy(f->v_ecef_mps, e.v_ecef_mps, sizeof f->v_ecef_mps);
+    if (cast->held) return hold(cast, round, &scene, at_enu);
     engagement_fly(&r, &e, &m, &world);
     if (scene.no_memory) {
         free(f->sample);

@@ -126,7 +126,11 @@ typedef struct CastFlight {
     bool   hit;
     double miss_m, flight_s, end_mps; /* closest approach to the aim point, as if it flew on; until its Detonation */
     double most_lateral_mps2, guided_share;
-    FlightSample *sample; /* [samples], of 10 ms */
+    FlightSample *sample; /* [samples], of 10 ms; of a round that is held the launch alone */
+    /* Launch: in ticks of 1 ms of the scenario's time. */
+    Missile missile; /* with the shot's hit_m as its fuze's distance */
+    int64_t tick;
+    double  p_ecef[3], v_ecef_mps[3];
 } CastFlight;
 
 /* A joint that its model has and the scenario moves. */
@@ -147,6 +151,7 @@ typedef struct Cast {
     CastHidden     *hidden; /* [hidden_count] */
     int             flight_count;
     CastFlight     *flight; /* [flight_count] */
+    bool            held;   /* cast_create_held, and cast_take_flight has not been called */
 } Cast;
 
 /* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not
@@ -154,7 +159,19 @@ typedef struct Cast {
 Status cast_create(Cast **out, const Scenario *scenario);
 /* The same; what hides is placed by what a tracer sees of plants. judge NULL: by estimates alone. */
 Status cast_create_judged(Cast **out, const Scenario *scenario, const HideJudge *judge);
+/* The same; the one shot that flies is fired and no more: another program flies it, and cast_take_flight says how.
+ * STATUS_BAD_VALUE, logged: there is none, or several, or it has no seeker. */
+Status cast_create_held(Cast **out, const Scenario *scenario, const HideJudge *judge);
 void   cast_destroy(Cast *cast);
+
+/* How the held round flew; times are the scenario's. */
+typedef struct CastFlown {
+    const struct FlightState *state; /* [states], each tick of 10 ms from the launch on */
+    int                       states, end;
+    bool                      hit; /* it went off at its target; else by the ground (end), or not at all */
+    double                    impact_s, impact_ecef[3], miss_m;
+} CastFlown;
+Status cast_take_flight(Cast *cast, const CastFlown *flown);
 
 typedef struct CastPose {
     double p_enu[3], r_enu_from_body[9];
@@ -184,7 +201,9 @@ void   cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *roun
 /* Flies a round whose launch, shooter and target (-1: at_enu) are known: its end, result, and where it is meanwhile.
  * entities/exercise/cast_flight.c */
 Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double at_enu[3]);
-void   cast_flight_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);
+/* What a hit does to the round's target. entities/exercise/cast_shots.c */
+void cast_damage(Cast *cast, const CastRound *round);
+void cast_flight_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);
 /* Whether an entity is a munition that flew so. */
 static inline bool cast_is_flown(const Cast *cast, int entity)
 {

@@ -153,7 +153,7 @@ static bool beyond_barrel(CastRound *round, const ScenarioShot *shot)
     return true;
 }
 
-static void damage(Cast *cast, const CastRound *round)
+void cast_damage(Cast *cast, const CastRound *round)
 {
     static const double       stops_s = 2, g_mps2 = 9.80665;
     const enum ScenarioDamage damage = cast->scenario->shot[round->shot].damage;
@@ -196,8 +196,8 @@ static Status fly(Cast *cast, CastRound *round)
     impact_place(at_enu, cast, round, round->fire_s); /* of a place, whose ground it meets; a target is followed */
     at_enu[2] = exercise_ground_at(NULL, &cast->ground, at_enu[0], at_enu[1]);
     status = cast_fly(cast, round, &missile, at_enu);
-    if (status != STATUS_OK) return status;
-    if (round->result == dis_result_entity_impact) damage(cast, round);
+    if (status != STATUS_OK || cast->held) return status;
+    if (round->result == dis_result_entity_impact) cast_damage(cast, round);
     else round->target = -1;
     return STATUS_OK;
 }
@@ -207,6 +207,11 @@ Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
     const Scenario *s = cast->scenario;
     int             flown = 0;
     for (int i = 0; i < cast->round_count; i++) flown += *s->shot[cast->round[i].shot].flies != 0;
+    if (cast->held && flown != 1) {
+        log_error("scenario: %s: %d shots fly: in a loop with frames one does; give it `flies: ROW`, and rounds: 1",
+                  s->path, flown);
+        return STATUS_BAD_VALUE;
+    }
     if (flown && !(cast->flight = calloc((size_t)flown, sizeof *cast->flight))) return STATUS_NO_MEMORY;
     for (int i = 0; i < cast->round_count; i++) {
         CastRound          *round = &cast->round[i];
@@ -232,7 +237,7 @@ Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
         round->result = shot->hit == SCENARIO_HIT_ENTITY   ? dis_result_entity_impact
                         : shot->hit == SCENARIO_HIT_GROUND ? dis_result_ground_impact
                                                            : dis_result_none;
-        if (shot->hit == SCENARIO_HIT_ENTITY) damage(cast, round);
+        if (shot->hit == SCENARIO_HIT_ENTITY) cast_damage(cast, round);
         else round->target = -1;
     }
     return STATUS_OK;

@@ -337,20 +337,21 @@ static void send_detonation(Exercise *x, const CastRound *round)
     ecef_from_enu(k.p_ecef, &cast->ground.frame, round->impact_enu);
     pdu->header = link_header(&x->link, dis_pdu_detonation, 2, t_s);
     pdu->firing = id_of(x, round->shooter);
-    pdu->target = id_of(x, round->target);
+    const int target_of = round->result == dis_result_entity_impact ? round->target : -1;
+    pdu->target = id_of(x, target_of);
     pdu->munition = id_of(x, round->munition);
     pdu->event = event_of(x, round);
     pdu->descriptor = descriptor_of(round);
     pdu->result = (uint8_t)round->result;
     memset(pdu->p_target_m, 0, sizeof pdu->p_target_m);
     for (int i = 0; i < 3; i++) pdu->p_ecef[i] = k.p_ecef[i], pdu->velocity_mps[i] = (float)k.v_mps[i];
-    if (round->target >= 0) {
+    if (target_of >= 0) {
         double off[3], off_body[3];
-        cast_kinematics(&target, cast, round->target, t_s);
+        cast_kinematics(&target, cast, target_of, t_s);
         v3_sub(off, k.p_ecef, target.p_ecef);
         m3_tmul_v3(off_body, target.r_ecef_from_body, off);
         for (int i = 0; i < 3; i++) pdu->p_target_m[i] = (float)off_body[i];
-        x->look[round->target] = 0; /* its damage appears at this tick */
+        x->look[target_of] = 0; /* its damage appears at this tick */
     }
     link_pdu(&x->link, t_s, x->bytes, dis_encode_detonation(x->bytes, sizeof x->bytes, pdu));
     if (round->munition >= 0 && !(cast->scenario->shot[round->shot].silent_s > 0) && x->said[round->munition].known) {

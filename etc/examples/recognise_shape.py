@@ -32,7 +32,7 @@ def features(look, planes, noises, detection):
     """The features of a candidate, natural logarithms: of few and of many times their size normal alike."""
     left, top, right, bottom = (int(v) for v in detection.box)
     width, height = right - left, bottom - top
-    values = [math.log(detection.score / (1 - detection.score)), math.log(1e3 * math.sqrt(width * height) / look.focal_px),
+    values = [math.log(detection.score / max(1 - detection.score, 1e-16)), math.log(1e3 * math.sqrt(width * height) / look.focal_px),
               math.log(width / height)]
     for plane, noise in zip(planes, noises):
         values += _in_band(plane, noise, left, top, right, bottom)

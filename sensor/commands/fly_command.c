@@ -1,5 +1,5 @@
-/* sensor/commands/fly_command.c: `pitviper fly`: flies the missiles of a scenario with true sight: a table of how close
- * they came, over seeds, and a recording of one. */
+/* sensor/commands/fly_command.c: `pitviper fly`: flies the missiles of a scenario with true sight, or one by what is
+ * seen in its own frames: a table of how close they came, over seeds, and a recording of one. */
 #include "sensor/commands/commands.h"
 #include "pitviper_output.h"
 
@@ -8,6 +8,8 @@
 #include "entities/exercise/exercise.h"
 #include "entities/flight/engagement.h"
 #include "sensor/commands/exercise_scenario_private.h"
+#include "sensor/commands/fly_loop_private.h"
+#include "sensor/commands/fly_plot_private.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/commands/plant_judge.h"
 #include "sensor/node/run/stop.h"
@@ -18,14 +20,15 @@
 enum { max_sets = 256, max_seeds = 10000, max_misses = 100000 };
 
 typedef struct Options {
-    const char *scenario, *out, *missile;
+    const char *scenario, *out, *missile, *plot;
     bool        overwrite;
     int         seeds, set_count;
     const char *set[max_sets];
+    FlyLoop     loop;
 } Options;
 
 static const char help[] =
-    "usage: pitviper fly SCENARIO [-o LOG] [options]\n"
+    "usage: pitviper fly SCENARIO [-o LOG] [options] [-- OPTIONS OF THE FRAMES]\n"
     "\n"
     "Flies the missiles of a scenario (shots with `flies: ROW` of etc/missiles.csv) with true sight of their targets, and "
     "prints a\n"
@@ -38,9 +41,21 @@ static const char help[] =
     "  --missile ROW        all shots whose munitions are entities, and that name no other row, fly by this row\n"
     "  --seeds N            the scenario's seed and the N - 1 after it; then the circular error probable (CEP): the median\n"
     "                       of the closest approaches, with its 95 % interval by order statistics, 6 flights or more\n"
+    "  --plot FILE          paths of the flights (the first 100) as SVG, from the side and from above\n"
     "  --set KEY=VALUE      one key of the scenario, such as seed=7; may be repeated; shots.NAME.KEY=VALUE is of all "
     "shots\n"
-    "                       whose munition has that name: sight_every_s, sight_late_s, sight_error_m, hit_m ...\n";
+    "                       whose munition has that name: sight_every_s, sight_late_s, sight_error_m, hit_m ...\n"
+    "\n"
+    "In the loop: one missile, whose seeker's frames are rendered as it flies, and guide it. Options of `pitviper replay` "
+    "for the\n"
+    "frames follow --, as --size, --bands, --rate (20), --set.\n"
+    "  --frames DIR         renders, into DIR; without --recogniser the line of sight of each frame is the true one\n"
+    "  --recogniser COMMAND a program that answers each frame by UDP (`pitviper help answers`); by /bin/sh, with\n"
+    "                       PITVIPER_MEMORY, PITVIPER_PORT and PITVIPER_OUT in its environment; DIR/sights.csv has its "
+    "answers\n"
+    "  --limit S            longest wait for an answer (2); then the missile has none to that frame\n"
+    "  --start S            the same for the first (30)\n"
+    "  --sights FILE        flies by the answers of a flight before, its sights.csv: to the same bits\n";
 
 static bool whole(int *out, const char *text)
 {
@@ -53,17 +68,62 @@ static bool whole(int *out, const char *text)
     return false;
 }
 
+static bool seconds(double *out, const char *name, const char *text)
+{
+    if (text_to_double(out, text) && *out > 0 && *out <= 3600) return true;
+    log_error("fly: --%s: '%s' is not a time in seconds above 0, up to 3600", name, text);
+    return false;
+}
+
+/* Whether what is given goes together. */
+static int parse_wrong(const Options *o)
+{
+    if (o->loop.recogniser && o->loop.sights)
+        return command_line_wrong("fly", "--sights has the answers of a flight before: without --recogniser");
+    if (o->loop.sights && o->seeds > 1) return command_line_wrong("fly", "--sights is of one flight: without --seeds");
+    if (o->loop.given_count > 0 && !fly_loop_asked(&o->loop))
+        return command_line_wrong("fly", "options after -- are of frames: with --frames DIR or --recogniser COMMAND");
+    return 0;
+}
+
 /* Returns 0 to go on; else the program exits with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
-    enum { OUT = 'o', HELP = 'h', SET = 256, OVERWRITE, MISSILE, SEEDS };
+    enum {
+        OUT = 'o',
+        HELP = 'h',
+        SET = 256,
+        OVERWRITE,
+        MISSILE,
+        SEEDS,
+        FRAMES,
+        RECOGNISER,
+        LIMIT,
+        START,
+        SIGHTS,
+        PLOT
+    };
     static const struct option options[] = {{"out", 1, NULL, OUT},
                                             {"overwrite", 0, NULL, OVERWRITE},
                                             {"missile", 1, NULL, MISSILE},
                                             {"seeds", 1, NULL, SEEDS},
                                             {"set", 1, NULL, SET},
+                                            {"plot", 1, NULL, PLOT},
+                                            {"frames", 1, NULL, FRAMES},
+                                            {"recogniser", 1, NULL, RECOGNISER},
+                                            {"limit", 1, NULL, LIMIT},
+                                            {"start", 1, NULL, START},
+                                            {"sights", 1, NULL, SIGHTS},
                                             {"help", 0, NULL, HELP},
                                             {NULL, 0, NULL, 0}};
+    for (int i = 1; i < argc; i++) /* what follows is of the frames */
+        if (strcmp(argv[i], "--") == 0) {
+            o->loop.given = argv + i + 1;
+            o->loop.given_count = argc - i - 1;
+            argc = i;
+        }
+    if (o->loop.given_count > fly_loop_given_most)
+        return 1 + command_line_wrong("fly", "more than %d words after --", fly_loop_given_most);
     optind = 0; /* restart getopt */
     for (int option; (option = command_line_option(argc, argv, "o:h", options)) != -1;) {
         bool ok = true;
@@ -85,6 +145,24 @@ static int parse(Options *o, int argc, char **argv)
             if (ok) o->set[o->set_count++] = optarg;
             else log_error("fly: more than %d of --set", max_sets);
             break;
+        case PLOT:
+            o->plot = optarg;
+            break;
+        case FRAMES:
+            o->loop.frames = optarg;
+            break;
+        case RECOGNISER:
+            o->loop.recogniser = optarg;
+            break;
+        case LIMIT:
+            ok = seconds(&o->loop.limit_s, "limit", optarg);
+            break;
+        case START:
+            ok = seconds(&o->loop.start_s, "start", optarg);
+            break;
+        case SIGHTS:
+            o->loop.sights = optarg;
+            break;
         case HELP:
             fputs(help, stdout);
             return 1;
@@ -101,6 +179,10 @@ static int parse(Options *o, int argc, char **argv)
     if (o->out && o->seeds > 1)
         return 1 + command_line_wrong("fly", "-o LOG is of one seed: leave --seeds out, and give --set seed=N");
     if (o->out && !dis_recorder_name("fly: -o", o->out)) return 1 + 2;
+    const int wrong = parse_wrong(o);
+    if (wrong) return 1 + wrong;
+    o->loop.overwrite = o->overwrite;
+    o->loop.several = o->seeds > 1;
     o->scenario = argv[optind];
     return 0;
 }
@@ -119,7 +201,7 @@ static const char *result_name(const CastRound *round)
     }
 }
 
-static void print_row(const Cast *cast, const CastFlight *flight)
+static void print_row(const Cast *cast, const CastFlight *flight, const FlyLoopCounts *counts)
 {
     const CastRound *round = &cast->round[flight->round];
     char             marking[12] = "", shown[64] = "";
@@ -129,10 +211,14 @@ static void print_row(const Cast *cast, const CastFlight *flight)
     }
     for (char *at = shown; *at; at++)
         if (*at == ',' || *at == '"') *at = ' ';
-    printf("%lld,%d,%s,%s,%.3f,%.6f,%s,%s,%.6g,%.2f,%.2f,%.4f\n", cast->scenario->seed, flight->round + 1, shown,
+    printf("%lld,%d,%s,%s,%.3f,%.6f,%s,%s,%.6g,%.2f,%.2f,%.4f", cast->scenario->seed, flight->round + 1, shown,
            cast->scenario->shot[round->shot].flies, round->fire_s, flight->flight_s, result_name(round),
            flight_end_name((FlightEnd)flight->end), flight->miss_m, flight->end_mps, flight->most_lateral_mps2,
            flight->guided_share);
+    if (counts)
+        printf(",%d,%d,%d,%d,%d,%llu", counts->frames, counts->verdicts[LOOP_SEEN], counts->verdicts[LOOP_EMPTY],
+               counts->verdicts[LOOP_OUTSIDE], counts->verdicts[LOOP_NONE], (unsigned long long)counts->late);
+    putchar('\n');
 }
 
 typedef struct Recording {
@@ -149,16 +235,15 @@ static bool take_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
     return !r->failed && !stop_asked();
 }
 
-static Status record(const Cast *cast, const Options *o)
+/* Writes the exercise of a cast. */
+static Status write_exercise(const Cast *cast, const char *path, const char *comment)
 {
     Recording    r = {0};
     Exercise    *exercise = NULL;
-    char         comment[300];
     const double epoch_unix_s = exercise_scenario_epoch(cast->scenario);
-    Status       status = overwrite_file("fly", o->out, o->overwrite);
-    snprintf(comment, sizeof comment, "pitviper fly %.200s", o->scenario);
+    Status       status = STATUS_OK;
     r.epoch_ns = (int64_t)floor(epoch_unix_s) * 1000000000 + llround(fmod(epoch_unix_s, 1) * 1e9);
-    if (status == STATUS_OK) status = dis_recorder_open(&r.recorder, o->out, comment);
+    if (status == STATUS_OK) status = dis_recorder_open(&r.recorder, path, comment);
     if (status == STATUS_OK) status = dis_recorder_begin(r.recorder);
     if (status == STATUS_OK) status = exercise_create(&exercise, cast, epoch_unix_s, take_datagram, &r);
     while (status == STATUS_OK && exercise_step(exercise)) {
@@ -166,6 +251,15 @@ static Status record(const Cast *cast, const Options *o)
     if (exercise) exercise_finish(exercise);
     exercise_destroy(exercise);
     if (dis_recorder_close(r.recorder) != STATUS_OK || r.failed) status = STATUS_IO;
+    return status;
+}
+
+static Status record(const Cast *cast, const Options *o)
+{
+    char   comment[300];
+    Status status = overwrite_file("fly", o->out, o->overwrite);
+    snprintf(comment, sizeof comment, "pitviper fly %.200s", o->scenario);
+    if (status == STATUS_OK) status = write_exercise(cast, o->out, comment);
     for (int i = 0; i < cast->flight_count && status == STATUS_OK; i++)
         if (cast->round[cast->flight[i].round].impact_s > cast->scenario->duration_s)
             log_warn("fly: round %d is still in the air when the scenario ends, at %g s: no Detonation is in %s; see "
@@ -174,11 +268,38 @@ static Status record(const Cast *cast, const Options *o)
     return status;
 }
 
-/* Closest approaches so far. */
+/* Closest approaches, and paths, so far. */
 typedef struct Misses {
-    int    count;
-    double miss_m[max_misses];
+    int      count;
+    double   miss_m[max_misses];
+    FlyPaths paths;
 } Misses;
+
+static void take(Misses *misses, const Cast *cast, const CastFlight *flight, const Options *o)
+{
+    if (misses->count < max_misses) misses->miss_m[misses->count++] = flight->miss_m;
+    if (o->plot) fly_paths_take(&misses->paths, cast, flight);
+}
+
+/* One missile, by what is seen in its frames. */
+static Status fly_in_loop(Misses *misses, Scenario *scenario, const HideJudge *hide, const Options *o)
+{
+    Cast          *cast = NULL;
+    FlyLoopCounts  counts = {0};
+    const Scenario as_given = *scenario;
+    Status         status = cast_create_held(&cast, scenario, hide);
+    if (status == STATUS_OK) status = fly_loop_seed(&counts, cast, scenario, &o->loop, write_exercise);
+    if (status == STATUS_OK && !stop_asked()) {
+        print_row(cast, &cast->flight[0], &counts);
+        fflush(stdout);
+        take(misses, cast, &cast->flight[0], o);
+        if (o->out) status = record(cast, o);
+    }
+    cast_destroy(cast);
+    scenario->duration_s = as_given.duration_s;
+    scenario->dis.threshold_m = as_given.dis.threshold_m;
+    return status;
+}
 
 static Status fly_seed(Misses *misses, const Scenario *scenario, const HideJudge *hide, const Options *o)
 {
@@ -192,8 +313,8 @@ static Status fly_seed(Misses *misses, const Scenario *scenario, const HideJudge
         status = STATUS_BAD_VALUE;
     }
     for (int i = 0; status == STATUS_OK && i < cast->flight_count; i++) {
-        print_row(cast, &cast->flight[i]);
-        if (misses->count < max_misses) misses->miss_m[misses->count++] = cast->flight[i].miss_m;
+        print_row(cast, &cast->flight[i], NULL);
+        take(misses, cast, &cast->flight[i], o);
     }
     if (status == STATUS_OK && o->out) status = record(cast, o);
     cast_destroy(cast);
@@ -239,14 +360,17 @@ static Status fly(Scenario *scenario, const Options *o)
     Status      status = misses ? plant_judge_create(&judge, "avx2") : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         const HideJudge hide = plant_judge_hide(judge);
-        puts("seed,round,munition,missile,fire_s,flight_s,hit,end,miss_m,end_mps,most_lateral_mps2,guided_share");
+        const bool      loop = fly_loop_asked(&o->loop);
+        printf("seed,round,munition,missile,fire_s,flight_s,hit,end,miss_m,end_mps,most_lateral_mps2,guided_share%s\n",
+               loop ? ",frames,seen,empty,outside,none,late" : "");
         for (int i = 0; i < o->seeds && status == STATUS_OK && !stop_asked(); i++, scenario->seed++)
-            status = fly_seed(misses, scenario, &hide, o);
+            status = loop ? fly_in_loop(misses, scenario, &hide, o) : fly_seed(misses, scenario, &hide, o);
         if (fflush(stdout) != 0 || ferror(stdout)) {
             log_error("fly: cannot write the table");
             status = STATUS_IO;
         }
         if (status == STATUS_OK && misses->count > 1) print_cep(misses);
+        if (status == STATUS_OK && o->plot) status = fly_paths_write(&misses->paths, o->plot, o->scenario);
     }
     plant_judge_destroy(judge);
     free(misses);
@@ -269,7 +393,7 @@ static Status fly_by(Scenario *scenario, const Options *o)
 
 int fly_command(int argc, char **argv)
 {
-    Options   o = {.seeds = 1};
+    Options   o = {.seeds = 1, .loop = {.limit_s = 2, .start_s = 30}};
     Scenario  scenario = {0};
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
@@ -282,7 +406,9 @@ int fly_command(int argc, char **argv)
             return 2;
         }
     stop_by_signals();
+    if (fly_loop_asked(&o.loop)) thread_flush_denormals();
     status = fly_by(&scenario, &o);
+    if (status == STATUS_OK && o.plot) status = overwrite_file("fly", o.plot, o.overwrite);
     if (status == STATUS_OK) status = fly(&scenario, &o);
     if (status == STATUS_NO_MEMORY) log_error("fly: out of memory");
     scenario_destroy(&scenario);

@@ -11,7 +11,8 @@
 
 /* NaN: not known. */
 typedef struct Host {
-    const SnapshotEntity *entity; /* NULL: an observer */
+    const SnapshotEntity *entity; /* NULL: an observer, or flown */
+    DisEntityId           flown;  /* a missile in the loop; 0:0:0: none */
     double                p_ecef[3], psi_rad, theta_rad, phi_rad, speed_mps;
     Geodetic              place;
 } Host;
@@ -22,7 +23,8 @@ static const void *the_host(FieldAt *at, int i)
     const FrameRecord *r = at->of;
     Host              *host = (Host *)at->room;
     (void)i;
-    *host = (Host){.entity = r->host, .speed_mps = v3_length(r->host ? r->host->v_ecef_mps : r->v_eye_mps)};
+    *host = (Host){
+        .entity = r->host, .flown = r->host_id, .speed_mps = v3_length(r->host ? r->host->v_ecef_mps : r->v_eye_mps)};
     memcpy(host->p_ecef, r->p_eye_ecef, sizeof host->p_ecef);
     if (geodetic_from_ecef(&host->place, r->p_eye_ecef) != STATUS_OK) host->place = (Geodetic){NAN, NAN, NAN};
     euler_from_r_ecef_from_body(&host->psi_rad, &host->theta_rad, &host->phi_rad, r->r_ecef_from_body);
@@ -37,6 +39,8 @@ static const void *radar_of(const void *of) { return ((const FrameRecord *)of)->
 static json_t *host_id(FieldAt *at)
 {
     const SnapshotEntity *host = entity_of(at->of);
+    const DisEntityId     flown = ((const Host *)at->of)->flown;
+    if (!host && !dis_entity_id_is_none(flown)) return field_id(flown);
     return host ? field_id(host->id) : json_string("observer");
 }
 

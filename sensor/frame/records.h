@@ -25,7 +25,8 @@ typedef struct FrameRecord {
     double                time_s;
     const Snapshot       *snapshot;
     const Catalog        *catalog;
-    const SnapshotEntity *host; /* NULL: an observer that is no entity */
+    const SnapshotEntity *host;    /* NULL: none of the snapshot */
+    DisEntityId           host_id; /* without it: 0:0:0: an observer that is no entity; else a missile in the loop */
     double                p_eye_ecef[3], v_eye_mps[3];
     double                r_ecef_from_body[9]; /* of the host; of the camera for an observer */
     double                r_ecef_from_cam[9];

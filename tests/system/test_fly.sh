@@ -105,6 +105,12 @@ sed '1d; $d' "$tmp/stdout" | cut -d, -f9 | sort -g >"$tmp/misses"
 check "the CEP is the median: ${cep:-}" is "$(awk -v c="${cep:-0}" '{ m[NR] = $1 } END { d = (m[30] + m[31]) / 2 - c; print d * d }' "$tmp/misses")" '<' 1e-6
 # of 60 throws of a coin P(B <= 21) = 0.0137 and P(B <= 22) = 0.0259: the 22nd from either end
 check "the interval is that of ranks 22 and 39" is "$(awk -v a="${low:-0}" -v b="${high:-0}" '{ m[NR] = $1 } END { print (m[22] - a) ^ 2 + (m[39] - b) ^ 2 }' "$tmp/misses")" '<' 1e-6
+run fly "$tmp/air.yaml" --seeds 3 --plot "$tmp/paths.svg" --set shots.Sam.sight_error_m=20
+check "a plot that is XML" xml "$tmp/paths.svg"
+check "with an end of each path in both views" [ "$(grep -o '<circle' "$tmp/paths.svg" | wc -l)" = 6 ]
+check "and as many hits as the table" grep -q "paths of 3 flights, $(grep -c ',entity,' "$tmp/stdout") hits" "$tmp/paths.svg"
+run fly "$tmp/air.yaml" --plot "$tmp/paths.svg"
+check "an existing plot stays" [ "$code" = 1 ]
 run fly "$tmp/air.yaml" --seeds 3 --quiet
 check "quiet: the table alone" [ "$(lines_in "$tmp/stdout")" = 4 ]
 

@@ -391,6 +391,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .choose = run->choose,
                                   .clock = run->clock,
                                   .cigi = run->cigi,
+                                  .flight = run->flight,
                                   .save_count = o->save_count,
                                   .save = o->save,
                                   .several = o->host_count > 1,

@@ -39,10 +39,11 @@ struct Run {
     void (*publish)(void *user, const Frame *frame);        /* may be NULL */
     void (*note)(void *user, const char *text);             /* into the recording; may be NULL */
     unsigned (*choose)(void *user, const FrameTime *frame); /* SessionShared.choose; may be NULL */
-    DisSend         *send;  /* sends the Data PDUs of publish.dis; NULL: they are not sent */
-    void            *user;  /* passed to these five */
-    FrameClock      *clock; /* the command's, of `frames`; NULL where none are made */
-    struct CigiNode *cigi;  /* SessionShared.cigi; the command's */
+    DisSend           *send;   /* sends the Data PDUs of publish.dis; NULL: they are not sent */
+    void              *user;   /* passed to these five */
+    FrameClock        *clock;  /* the command's, of `frames`; NULL where none are made */
+    struct CigiNode   *cigi;   /* SessionShared.cigi; the command's */
+    struct FlightLoop *flight; /* SessionShared.flight; likewise */
 };
 
 /* Where settings are chosen for a frame time: how fast this machine is, into quality.machine_factor, and among the

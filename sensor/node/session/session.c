@@ -37,9 +37,10 @@ static Status open_session(Session *s)
     s->tick = (int64_t)ceil(s->plan.start_s * seeker_ticks_per_s);
     memcpy(s->p_aim_ecef, s->plan.p_aim_ecef, sizeof s->p_aim_ecef);
     const bool observes = dis_entity_id_is_none(s->plan.host) && !s->plan.any_munition;
-    Status     status = shared->cigi ? session_host_cigi(&s->host, s)
-                        : observes   ? session_host_observer(&s->host, s)
-                                     : session_host_entity(&s->host, s);
+    Status     status = shared->cigi     ? session_host_cigi(&s->host, s)
+                        : shared->flight ? session_host_flight(&s->host, s)
+                        : observes       ? session_host_observer(&s->host, s)
+                                         : session_host_entity(&s->host, s);
     if (status == STATUS_OK) status = entity_table_create(&s->table, &table, shared->catalog);
     if (status == STATUS_OK) status = read_marks(s);
     if (status == STATUS_OK) status = session_heat_open(s);

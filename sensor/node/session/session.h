@@ -44,8 +44,9 @@ typedef struct SessionShared {
     /* What a frame of a live node gives up (frame_verdict.h), chosen before it is rendered, and noted. NULL: nothing;
      * user: as above. */
     unsigned (*choose)(void *user, const FrameTime *frame);
-    struct CigiNode *cigi;    /* a host that gives time and eye, frame by frame, and waits for each; NULL: none */
-    bool             several; /* hosts, one after the other: what has a name of its own gets the host's too */
+    struct CigiNode   *cigi;    /* a host that gives time and eye, frame by frame, and waits for each; NULL: none */
+    struct FlightLoop *flight;  /* a missile whose seeker this is, flown by what is seen of the frames; NULL: none */
+    bool               several; /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 
 enum { session_stages = 6, session_frames_kept = 1000000, session_hosts_kept = 64 };

@@ -140,6 +140,7 @@ static Status add_answers(Consumers *list, Session *s)
     const AnswersOf of = {config->publish.detections_port,
                           {s->shared->bands, config->sensor.width_px, config->sensor.height_px}};
     Status          status = answers_open(&s->answers, &of);
+    if (status == STATUS_OK && s->shared->flight) answers_watch(s->answers, loop_sights_taken, s->shared->flight);
     if (status == STATUS_OK) status = consume_answers(&consumer, s->answers, s->out);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }

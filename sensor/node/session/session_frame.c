@@ -206,6 +206,7 @@ static void fill_record(Frame *f, const Session *s, const Eye *eye)
                        .snapshot = &f->seen.snapshot,
                        .catalog = s->shared->catalog,
                        .host = eye->hidden >= 0 ? &f->seen.snapshot.entity[eye->hidden] : NULL,
+                       .host_id = s->shared->flight ? s->shared->flight->id : (DisEntityId){0},
                        .request = &f->request,
                        .hfov_rad = s->shared->config->sensor.hfov_deg * rad_per_deg,
                        .gimbal_at_limit = eye->at_limit,

@@ -6,6 +6,7 @@
 #include "sensor/frame/frame_world.h"
 #include "sensor/node/session/frame_verdict.h"
 #include "sensor/node/session/seeker_private.h"
+#include "sensor/node/flight/flight_loop.h"
 #include "sensor/node/player/player.h"
 #include "sensor/node/session/session.h"
 #include "sensor/publish/consumers/consumers.h"
@@ -102,6 +103,8 @@ struct HostMotion {
 Status session_host_entity(HostMotion **out, Session *s);
 /* A stand-off observer. */
 Status session_host_observer(HostMotion **out, Session *s);
+/* A missile that flies by what is seen in its own frames (sensor/node/flight/flight_loop.h). */
+Status session_host_flight(HostMotion **out, Session *s);
 /* As a CIGI host says. */
 Status session_host_cigi(HostMotion **out, Session *s);
 

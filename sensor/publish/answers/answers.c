@@ -37,6 +37,8 @@ struct Answers {
     bool            has[BAND_COUNT];
     Answer          newest[BAND_COUNT];
     AnswerCounters  counters;
+    AnswersTaken   *taken; /* NULL: none is told */
+    void           *taken_user;
 };
 
 /* ---- one datagram -------------------------------------------------------------------------- */
@@ -93,8 +95,10 @@ static bool receive(Answers *a)
     pthread_mutex_lock(&a->lock);
     if (reason == ANSWER_GOOD) reason = keep(a, &a->one, now_s, &arrival);
     a->counters.datagrams[a->one.form][reason]++;
-    AnswerLines *lines = a->lines;
+    AnswerLines  *lines = a->lines;
+    AnswersTaken *taken = a->taken;
     pthread_mutex_unlock(&a->lock);
+    if (taken && (reason == ANSWER_GOOD || reason == ANSWER_LATE)) taken(a->taken_user, &a->one);
     if (!lines || (reason != ANSWER_GOOD && reason != ANSWER_LATE)) return true;
     answer_lines_write(lines, &a->one, &arrival, &written);
     pthread_mutex_lock(&a->lock);
@@ -235,6 +239,14 @@ bool answers_latest(Answers *a, Band band, Answer *out)
     if (has) *out = a->newest[band];
     pthread_mutex_unlock(&a->lock);
     return has;
+}
+
+void answers_watch(Answers *a, AnswersTaken *taken, void *user)
+{
+    pthread_mutex_lock(&a->lock);
+    a->taken = taken;
+    a->taken_user = user;
+    pthread_mutex_unlock(&a->lock);
 }
 
 void answers_counters(Answers *a, AnswerCounters *out)

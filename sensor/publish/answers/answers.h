@@ -40,6 +40,10 @@ void answers_close(Answers *answers, AnswerCounters *counters);
 void answers_frame(Answers *answers, const AnswerFrame *frame);
 /* Copies the newest answer to a band, complete; false: there is none yet. Any thread may call it. */
 bool answers_latest(Answers *answers, Band band, Answer *out);
+/* From now on each answer that is taken, complete, is told as it arrives, in the thread that receives. Call it once,
+ * before the first frame. */
+typedef void AnswersTaken(void *user, const Answer *answer);
+void         answers_watch(Answers *answers, AnswersTaken *taken, void *user);
 /* So far. */
 void answers_counters(Answers *answers, AnswerCounters *out);
 

@@ -1,0 +1,146 @@
+/* sensor/node/flight/flight_loop.h: a missile that flies by what is seen in the frames of its own seeker, in lockstep.
+ *
+ * The missile is the session's host: sensor/node/session/host_flight.c steps it on the session's grid of 10 ms, ten
+ * steps of 1 ms each, and gives each frame the eye at its time. What was seen in a frame becomes a line of sight
+ * through the camera of that frame (loop_sights.c) and guides from late_s after the frame's time on. The clock
+ * (sensor/node/clock/flight_clock.h) makes no frame before every sight is known that guides before it, so the flight
+ * follows from the answers alone, not from when they came: the wall clock decides only whether an answer counts as
+ * missing. Times are exercise time, s; ticks count its milliseconds. */
+#ifndef SENSOR_NODE_FLIGHT_FLIGHT_LOOP_H
+#define SENSOR_NODE_FLIGHT_FLIGHT_LOOP_H
+
+#include "dis/pdu/pdu.h"
+#include "entities/flight/engagement.h"
+#include "entities/flight/flight.h"
+#include "entities/flight/miss.h"
+#include "entities/flight/sight_filter.h"
+#include "sensor/publish/answers/answers.h"
+
+#include <pthread.h>
+
+enum { loop_waiting_most = 256, loop_tick_ms = 10 };
+
+typedef enum LoopSource {
+    LOOP_TRUE,     /* the line of sight to the centre of the target as the frame shows it, its rate and range */
+    LOOP_ANSWERS,  /* of a recogniser, by UDP */
+    LOOP_RECORDED, /* as a flight before had them: loop_sights_read */
+} LoopSource;
+
+/* What was seen in a frame. */
+typedef enum LoopVerdict {
+    LOOP_SEEN,    /* at px */
+    LOOP_EMPTY,   /* the answer has no detection */
+    LOOP_OUTSIDE, /* none near the line of sight that was expected */
+    LOOP_NONE,    /* no answer in time */
+    loop_verdict_count,
+} LoopVerdict;
+extern const char *const loop_verdict_name[loop_verdict_count];
+
+/* The camera of a frame. */
+typedef struct LoopCamera {
+    double t_s, p_ecef[3], v_ecef_mps[3], r_ecef_from_cam[9];
+    View   view;
+    /* of the target: its centre and velocity, for LOOP_TRUE */
+    bool   target_known;
+    double target_ecef[3], target_v_ecef_mps[3];
+} LoopCamera;
+
+typedef struct LoopFrame { /* of which it is not known yet what was seen */
+    int        number;
+    double     asked_s; /* wall clock */
+    LoopCamera camera;
+} LoopFrame;
+
+typedef struct LoopRow { /* a row of sights.csv */
+    int         frame;
+    LoopVerdict sight;
+    double      px[2]; /* NaN unless seen */
+} LoopRow;
+
+typedef struct LoopAnswer {
+    int    frame; /* -1: none */
+    int    count;
+    double px[answer_detections_most][2], score[answer_detections_most];
+} LoopAnswer;
+
+typedef struct LoopUsable { /* a line of sight, and from when on it guides */
+    double      from_s;
+    FlightSight sight;
+} LoopUsable;
+
+typedef struct FlightLoop {
+    /* ---- given */
+    LoopSource  source;
+    DisEntityId id, target;
+    Missile     missile; /* its fuze_m is the distance at which it counts as a hit */
+    FlightWorld world;
+    int64_t     launch_tick;
+    double      p_ecef[3], v_ecef_mps[3]; /* launch */
+    double      late_s, memory;           /* memory: of the sight filter */
+    double      limit_s, start_s;         /* wall clock: longest wait for an answer, and for the first */
+    /* Whether the recogniser has ended; then nothing is waited for. NULL: it is not asked. */
+    bool (*gone)(void *user);
+    void *user;
+    /* ---- as it flies */
+    bool         launched, ended, out_of_memory, strange; /* strange: a recording that lacks a frame */
+    FlightEnd    end;
+    FlightState  state;
+    double       end_s, end_ecef[3]; /* impact, or the last grid point */
+    bool         hit;
+    Miss         miss;
+    double       most_lateral_mps2;
+    int64_t      guided, coasted; /* steps */
+    double       target_ecef[3];  /* at the last tick; valid if target_known */
+    bool         target_known;
+    FlightState *track; /* [track_count], each tick of 10 ms from the launch on */
+    int          track_count, track_room;
+    /* ---- sights */
+    LoopCamera  eye; /* of the last frame */
+    LoopFrame   waiting[loop_waiting_most];
+    int         first, count, frames;
+    LoopUsable  usable[loop_waiting_most]; /* a ring: the newest is usable[(usable_count - 1) % most] */
+    int64_t     usable_count;
+    SightFilter filter;
+    LoopRow    *row; /* [row_count], read for LOOP_RECORDED, else written */
+    int         row_count, row_room;
+    int         verdicts[loop_verdict_count];
+    double      gone_s; /* wall clock; 0: it has not ended */
+    /* ---- shared with the thread that receives answers */
+    pthread_mutex_t lock;
+    pthread_cond_t  arrived;
+    LoopAnswer      inbox[loop_waiting_most];
+    int             inbox_next, settled; /* settled: frames up to this one have their verdict; -1: none */
+    uint64_t        late;                /* answers to such, refused */
+} FlightLoop;
+
+Status flight_loop_begin(FlightLoop *loop); /* after `given` is filled in, all else 0 */
+void   flight_loop_free(FlightLoop *loop);
+
+/* Ground and target as the world of the session has them. */
+typedef struct LoopScene {
+    void *user;
+    /* False: there is none below. */
+    bool (*ground_at)(double on_ecef[3], double normal_ecef[3], void *user, const double p_ecef[3]);
+} LoopScene;
+
+/* Flies on to a tick of the session, which is t_s. target_ecef: the target's centre then; NULL: it is not there. */
+void flight_loop_tick(FlightLoop *loop, const LoopScene *scene, double t_s, const double target_ecef[3]);
+/* Where it is at t_s, not before the last tick, without flying on. False: it is not in flight. */
+bool flight_loop_at(FlightState *out, const FlightLoop *loop, double t_s);
+
+/* ---- loop_sights.c ---- */
+
+/* A frame has been made with loop->eye as its camera. */
+void loop_sights_frame(FlightLoop *loop, int number);
+/* An AnswersTaken; user: the loop. */
+void loop_sights_taken(void *loop, const Answer *answer);
+/* Settles what was seen in every frame whose sight guides before t_s. False: an answer is still waited for; a
+ * hundredth of a second has passed. */
+bool loop_sights_settle(FlightLoop *loop, double t_s);
+/* The sight that guides at t_s; NULL: none. */
+const FlightSight *loop_sights_at(const FlightLoop *loop, double t_s);
+/* sights.csv: frame, sight, column_px, row_px. */
+Status loop_sights_write(const FlightLoop *loop, const char *path);
+Status loop_sights_read(FlightLoop *loop, const char *path);
+
+#endif
