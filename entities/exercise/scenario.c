@@ -396,6 +396,14 @@ Status scenario_set(Scenario *scenario, const char *key, const char *value, cons
     return settings_set(scenario, NULL, &table, key, value, source);
 }
 
+static Status none_named(const char *list, const char *name, const char *source)
+{
+    char shown[128];
+    text_escape(shown, sizeof shown, name, strlen(name));
+    log_error("scenario: %s: there are no %s with name: '%s'", source, list, shown);
+    return STATUS_BAD_VALUE;
+}
+
 Status scenario_set_group(Scenario *scenario, const char *name, const char *key, const char *value, const char *source)
 {
     bool any = false;
@@ -420,10 +428,7 @@ Status scenario_set_group(Scenario *scenario, const char *name, const char *key,
         any = true;
     }
     if (any) return STATUS_OK;
-    char shown[128];
-    text_escape(shown, sizeof shown, name, strlen(name));
-    log_error("scenario: %s: there are no vehicles with name: '%s'", source, shown);
-    return STATUS_BAD_VALUE;
+    return none_named("vehicles", name, source);
 }
 
 Status scenario_set_shot(Scenario *scenario, const char *name, const char *key, const char *value, const char *source)
@@ -437,10 +442,7 @@ Status scenario_set_shot(Scenario *scenario, const char *name, const char *key, 
         any = true;
     }
     if (any) return STATUS_OK;
-    char shown[128];
-    text_escape(shown, sizeof shown, name, strlen(name));
-    log_error("scenario: %s: there are no shots with name: '%s'", source, shown);
-    return STATUS_BAD_VALUE;
+    return none_named("shots", name, source);
 }
 
 /* LIST.NAME.key, with list: `vehicles.` or `shots.`; the name may hold dots. False: it is of no item of that list. */

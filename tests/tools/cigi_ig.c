@@ -1,6 +1,6 @@
 /* tests/tools/cigi_ig.c: an image generator without pictures, in step with a CIGI host over UDP: cigi_ig PORT SECONDS.
  *
- * Listens on 127.0.0.1:PORT; whoever sends there first is the host. Every event and packet is a line of JSON on
+ * Listens on 127.0.0.1:PORT; the first sender there is the host. Every event and packet is a line of JSON on
  * standard output. A HAT/HOT Request is answered by latitude + longitude as the height of terrain, and a Line of Sight
  * request by invalid; a datagram of the host that says `end` ends it. */
 #include "dis/cigi/cigi_fields.h"
