@@ -14,7 +14,8 @@ typedef struct Import {
     double (*ring_m)[2];   /* [vector_most_corners] of its inner rings */
     const VectorPart *part;
     CultureFacts      facts;
-    int               made; /* records of this part so far */
+    int               made;      /* records of this part so far */
+    int64_t           passed[4]; /* buildings, lines, points, trees that were made and are not kept */
 } Import;
 
 /* ---- places ----------------------------------------------------------------------------------------- */
@@ -308,9 +309,8 @@ static Status add_round(Import *i)
 
 /* ---- features ---------------------------------------------------------------------------------------- */
 
-static Status take_part(void *user, const VectorPart *part)
+static Status make_part(Import *i, const VectorPart *part)
 {
-    Import        *i = user;
     CultureFacts  *f = &i->facts;
     const uint32_t ringed = part->shape == VECTOR_POLYGON;
     i->part = part, i->made = 0;
@@ -327,6 +327,25 @@ static Status take_part(void *user, const VectorPart *part)
     if (part->corners == 0) return leave(i, CULTURE_LEFT_LARGE);
     if (ringed) memcpy(i->corner_m[part->corners], i->corner_m[0], sizeof *i->corner_m);
     return add_runs(i, part->corners + (int)ringed, rule->makes == MAKES_TREE_ROW ? add_row : add_line);
+}
+
+/* The records made so far, those that are not kept too. */
+static void count_made(int64_t out[4], const Import *i)
+{
+    const Culture *c = i->culture;
+    const int      kept[4] = {c->buildings, c->lines, c->points, c->trees};
+    for (int k = 0; k < 4; k++) out[k] = i->passed[k] + kept[k];
+}
+
+static Status take_part(void *user, const VectorPart *part)
+{
+    Import      *i = user;
+    Culture     *c = i->culture;
+    const Status status = make_part(i, part);
+    if (!i->from->passes) return status;
+    count_made(i->passed, i);
+    c->corners = c->buildings = c->lines = c->points = c->trees = 0;
+    return status;
 }
 
 /* Degrees about the square, with room for its curvature; NaN near a pole or the date line: everything is asked for. */
@@ -398,17 +417,20 @@ void culture_report_left(char *out, size_t out_size, const CultureReport *r)
 }
 
 /* One line, a warning where the files have what cannot be true. */
-static void say(const CultureFiles *from, const Culture *c, const CultureReport *r)
+static void say(const Import *i, const CultureReport *r)
 {
-    char       left[512];
+    const CultureFiles *from = i->from;
+    char                left[512];
+    int64_t             made[4];
     const bool absurd = r->mended + r->unread + r->left[CULTURE_LEFT_LARGE] + r->left[CULTURE_LEFT_CROSSED] > 0;
     culture_report_left(left, sizeof left, r);
+    count_made(made, i);
     if (!*left && !absurd) return;
     (absurd ? log_warn : log_detail)(
         "terrain.buildings: %s: left out %s; numbers left aside: %d that could not be true, %d that are none; `pitviper "
-        "terrain culture FILE` lists what there is (%d buildings, %d lines, %d points, %d trees)",
+        "terrain culture FILE` lists what there is (%lld buildings, %lld lines, %lld points, %lld trees)",
         from->buildings && *from->buildings ? from->buildings : from->trees, *left ? left : "nothing", r->mended,
-        r->unread, c->buildings, c->lines, c->points, c->trees);
+        r->unread, (long long)made[0], (long long)made[1], (long long)made[2], (long long)made[3]);
 }
 
 Status culture_open(Culture *out, CultureReport *report, const CultureFiles *from)
@@ -426,7 +448,7 @@ Status culture_open(Culture *out, CultureReport *report, const CultureFiles *fro
     }
     for (int n = 0; n < culture.trees; n++) r.trees_marked += culture.tree[n].mark != PLANT_UNMARKED;
     for (int k = 0; k < CULTURE_LEFTS; k++) culture.left_out += r.left[k];
-    say(from, &culture, &r);
+    say(&import, &r);
     *out = culture;
     if (report) *report = r;
     return STATUS_OK;
@@ -439,11 +461,12 @@ bool culture_files_good(const char *buildings, const char *trees)
     Culture    culture = {0};
     if (*buildings && !culture_middle(&middle, buildings)) return false;
     const bool good =
-        local_frame_at(&frame, &middle) == STATUS_OK &&
-        culture_open(
-            &culture, NULL,
-            &(CultureFiles){.buildings = buildings, .trees = trees, .frame = &frame, .half_m = culture_farthest_m}) ==
-            STATUS_OK;
+        local_frame_at(&frame, &middle) == STATUS_OK && culture_open(&culture, NULL,
+                                                                     &(CultureFiles){.buildings = buildings,
+                                                                                     .trees = trees,
+                                                                                     .frame = &frame,
+                                                                                     .half_m = culture_farthest_m,
+                                                                                     .passes = true}) == STATUS_OK;
     culture_free(&culture);
     return good;
 }

@@ -18,6 +18,7 @@ typedef struct CultureFiles {
     CultureGround    *ground; /* NULL: ENU z of 0 everywhere */
     void             *user;
     double            half_m; /* half the side of the square about the frame's origin whose culture is wanted */
+    bool              passes; /* no record of files with vectors is kept: they are read to see whether they can be */
 } CultureFiles;
 
 /* Why a feature, or a part of one, is no record. */
@@ -53,7 +54,8 @@ Status culture_open(Culture *out, CultureReport *report, const CultureFiles *fro
 double culture_floor_m(const CultureFiles *from, const double (*corner_m)[2], int corners);
 /* "3 outside the terrain, 1 larger than 1 km2 ..."; empty: nothing was left out. */
 void culture_report_left(char *out, size_t out_size, const CultureReport *report);
-/* Whether files and a table can be read, to their ends; what is wrong is logged. Either may be empty. */
+/* Whether files and a table can be read, to their ends, however many records they hold; what is wrong is logged. Either
+ * may be empty. */
 bool culture_files_good(const char *buildings, const char *trees);
 /* The middle of the files' box; false, logged: they cannot be read, or hold nothing. */
 bool culture_middle(Geodetic *out, const char *files);

@@ -306,13 +306,36 @@ static void a_table_of_trees(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* Fifteen hedges of 200 km are 2.5 million plants: more than one culture holds, but no file has a limit of its own. */
+static void a_file_of_more_records_than_a_square_holds_is_good(void **state)
+{
+    (void)state;
+    char path[128];
+    begin_file();
+    for (int n = 0; n < 15; n++) {
+        const double p[2][2] = {{-1e5, 10 * n}, {1e5, 10 * n}};
+        add_feature("LineString", "[", "]", "\"barrier\":\"hedge\"", p, 2);
+    }
+    end_file("hedges.geojson");
+    path_of(path, "hedges.geojson");
+    CHECK(culture_files_good(path, ""));
+    save("hedges.geojson", "{\"type\":");
+    log_set_sink(check_listen, NULL);
+    CHECK(!culture_files_good(path, ""));
+    log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(places_are_on_the_ground), cmocka_unit_test(three_formats_and_systems_are_one),
-        cmocka_unit_test(mixed_features),           cmocka_unit_test(what_cannot_be_is_counted),
-        cmocka_unit_test(rows_are_clipped),         cmocka_unit_test(courtyards_are_open),
+        cmocka_unit_test(places_are_on_the_ground),
+        cmocka_unit_test(three_formats_and_systems_are_one),
+        cmocka_unit_test(mixed_features),
+        cmocka_unit_test(what_cannot_be_is_counted),
+        cmocka_unit_test(rows_are_clipped),
+        cmocka_unit_test(courtyards_are_open),
         cmocka_unit_test(a_table_of_trees),
+        cmocka_unit_test(a_file_of_more_records_than_a_square_holds_is_good),
     };
     return cmocka_run_group_tests(tests, open_lab, close_lab);
 }
