@@ -206,16 +206,21 @@ Status table_rows_find(int *row, const TableRows *rows, const char *name, const 
                        const char *other)
 {
     char      known[512] = "";
+    int       found = -1;
     WordMeant meant = word_meant(name);
     for (int i = 0; i < rows->table.rows; i++) {
         const char  *here = table_rows_text(rows, i, "name");
         const size_t length = strlen(known);
         if (strcmp(here, name) == 0) {
-            *row = i;
-            return STATUS_OK;
+            if (found >= 0) return table_rows_refuse(rows, i, "name", "another name than those of the rows above");
+            found = i;
         }
         snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "", here);
         word_consider(&meant, here);
+    }
+    if (found >= 0) {
+        *row = found;
+        return STATUS_OK;
     }
     word_consider(&meant, other);
     log_error("%s: %s: no %s named '%s'%s; there are: %s%s", rows->format->module, rows->table.path, what, name, beside,
