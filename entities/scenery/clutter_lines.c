@@ -139,6 +139,7 @@ static Status place_riders(ClutterWork *work, const Line *whole, int a, int b)
     const int first = work->paths;
     Status    status = path_side(work, &line, 0, line.count - 1);
     if (status == STATUS_OK) status = path_side(work, &line, line.count - 1, 0);
+    if (work->paths - first < 2) return status; /* beyond the ground */
     const double speed_mps = clutter_speed_mps[line.kind] * (0.8 + 0.4 * clutter_unit(key, 1));
     for (int k = 0; k < riders && status == STATUS_OK; k++) {
         ClutterThing *t = &rider[k];
