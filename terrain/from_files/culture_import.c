@@ -86,14 +86,6 @@ double culture_floor_m(const CultureFiles *from, const double (*p)[2], int corne
     return low_m;
 }
 
-static double area_of(const double (*p)[2], int corners)
-{
-    double sum = 0;
-    for (int k = 1; k + 1 < corners; k++)
-        sum += (p[k][0] - p[0][0]) * (p[k + 1][1] - p[0][1]) - (p[k][1] - p[0][1]) * (p[k + 1][0] - p[0][0]);
-    return 0.5 * sum;
-}
-
 static bool outline_is_within(const Import *i)
 {
     for (int k = 0; k < i->part->corners; k++)
@@ -139,9 +131,9 @@ static Status add_building(Import *i)
     if (n == 0 || n > culture_outline_most) return leave(i, CULTURE_LEFT_LARGE);
     if (!all_on_earth(i)) return leave(i, CULTURE_LEFT_CROSSED);
     if (!outline_is_within(i)) return leave(i, CULTURE_LEFT_OUTSIDE);
-    if (!(fabs(area_of(p, n)) <= most_m2)) return leave(i, CULTURE_LEFT_LARGE);
+    if (!(fabs(culture_area_m2(p, n)) <= most_m2)) return leave(i, CULTURE_LEFT_LARGE);
     if (i->part->rings > 0) n = with_courtyards(&courtyards, i);
-    const double area_m2 = fabs(area_of(p, n));
+    const double area_m2 = fabs(culture_area_m2(p, n));
     const double base_m = culture_floor_m(i->from, p, n);
     if (isnan(base_m)) return leave(i, CULTURE_LEFT_OUTSIDE);
     culture_building_make(&b, &from, &mended, &i->facts, p, n, area_m2, courtyards > 0);
@@ -300,7 +292,7 @@ static Status add_round(Import *i)
     const int n = i->part->corners;
     double    middle[2] = {0, 0};
     if (n == 0 || !all_on_earth(i)) return leave(i, CULTURE_LEFT_CROSSED);
-    const double across_m = 2 * sqrt(fabs(area_of(p, n)) / pi_rad);
+    const double across_m = 2 * sqrt(fabs(culture_area_m2(p, n)) / pi_rad);
     for (int k = 0; k < n; k++)
         for (int c = 0; c < 2; c++) middle[c] += p[k][c] / n;
     if (!(across_m >= 0.1)) return leave(i, CULTURE_LEFT_CROSSED);

@@ -33,7 +33,6 @@ typedef enum RuleMakes {
     MAKES_TREE_ROW,
     MAKES_NOTHING,
     MAKES_HEIGHT, /* numbers and words, as all that follow */
-    MAKES_PART_HEIGHT,
     MAKES_EAVES,
     MAKES_LEVELS,
     MAKES_ROOF_HEIGHT,
@@ -86,8 +85,7 @@ typedef struct CultureFacts {
     int                use, roof, wall, cover, ground, plant;
     int                roof_way; /* 0: along, 1: across */
     int                heated;   /* 0, 1 */
-    double height_m, eaves_m, part_height_m, ridge_rad, chimneys, levels, roof_height_m, roof_levels, width_m, lanes,
-        direction_rad;
+    double    height_m, eaves_m, ridge_rad, chimneys, levels, roof_height_m, roof_levels, width_m, lanes, direction_rad;
     bool      bridge, hidden, ruined;
     PlantMark mark;
     int       unread; /* numbers that are none */
