@@ -165,26 +165,6 @@ static void a_sight_error_is_the_miss(void **state)
     CHECK(sum_m2 > 12 * 2 * 9 * 0.4);
 }
 
-/* The table of etc/ with a launch_mps of 0 in the row of at_loft. */
-static void standing_start(char copy[text_file_size])
-{
-    char  path[1024], *text = NULL;
-    Table t;
-    CHECK(etc_path(path, sizeof path, "missiles.csv") && table_open(&t, path) == STATUS_OK);
-    size_t octets;
-    FILE  *to = open_memstream(&text, &octets);
-    for (int r = -1; r < t.rows; r++)
-        for (int c = 0; c < t.columns; c++) {
-            const bool here =
-                r >= 0 && strcmp(table_text(&t, r, 0), "at_loft") == 0 && c == table_column(&t, "launch_mps");
-            fprintf(to, "\"%s\"%c", here ? "0" : table_text(&t, r, c), c + 1 < t.columns ? ',' : '\n');
-        }
-    fclose(to);
-    table_close(&t);
-    text_file(copy, text);
-    free(text);
-}
-
 static void what_is_wrong_is_said(void **state)
 {
     (void)state;
@@ -212,7 +192,7 @@ static void what_is_wrong_is_said(void **state)
     scenario_destroy(&scenario);
     /* a launcher that stands and gives no speed gives no direction */
     char missiles[text_file_size];
-    standing_start(missiles);
+    missiles_but(missiles, "at_loft", "launch_mps", "0");
     CHECK(open_scene(&cast, &scenario, "missiles", missiles) == STATUS_BAD_VALUE);
     CHECK(strstr(check_said, "at_loft leaves its launcher at ") && strstr(check_said, "launch_mps"));
     scenario_destroy(&scenario);
