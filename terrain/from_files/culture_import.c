@@ -14,6 +14,7 @@ typedef struct Import {
     double (*ring_m)[2];   /* [vector_most_corners] of its inner rings */
     const VectorPart *part;
     CultureFacts      facts;
+    CultureKnown      known;
     int               made;      /* records of this part so far */
     int64_t           passed[4]; /* buildings, lines, points, trees that were made and are not kept */
 } Import;
@@ -64,6 +65,20 @@ static uint64_t id_of(Import *i)
     const int64_t  own[2] = {i->part->file, i->part->number};
     const uint64_t seed = i->facts.id ? i->facts.id : culture_mix(culture_mix_seed, own, sizeof own);
     return culture_mix(seed, number, sizeof number);
+}
+
+/* Takes the last record of a list back where there is one like it. */
+static Status take_back(Import *i, KnownList list)
+{
+    Culture     *c = i->culture;
+    int *const   count[] = {&c->buildings, &c->lines, &c->points, &c->trees};
+    bool         again = false;
+    const Status status = i->from->passes ? STATUS_OK : culture_known_take(&again, &i->known, c, list);
+    if (!again) return status;
+    if (list == KNOWN_BUILDING) c->corners = c->building[c->buildings - 1].first_corner;
+    if (list == KNOWN_LINE) c->corners = c->line[c->lines - 1].first_corner;
+    --*count[list];
+    return leave(i, CULTURE_LEFT_TWICE);
 }
 
 /* ---- buildings -------------------------------------------------------------------------------------- */
@@ -145,6 +160,8 @@ static Status add_building(Import *i)
         i->culture->left_out = left; /* counted with all others at the end */
         return leave(i, CULTURE_LEFT_CROSSED);
     }
+    const Status known = take_back(i, KNOWN_BUILDING);
+    if (known != STATUS_OK || i->culture->buildings == before) return known;
     r->height_from[from]++, r->mended += mended, r->unread += i->facts.unread, r->courtyards += courtyards;
     r->built_over += i->part->holes - courtyards;
     i->culture->repaired += mended > 0;
@@ -211,7 +228,9 @@ static Status add_line(Import *i, const double (*p)[2], int corners)
 {
     CultureLine l = line_of(i, rule_of(i));
     l.id = id_of(i);
-    return culture_add_line(i->culture, &l, p, corners);
+    const int    before = i->culture->lines;
+    const Status status = culture_add_line(i->culture, &l, p, corners);
+    return status == STATUS_OK && i->culture->lines > before ? take_back(i, KNOWN_LINE) : status;
 }
 
 /* ---- trees ------------------------------------------------------------------------------------------ */
@@ -225,7 +244,9 @@ static Status add_tree(Import *i, const double p_m[2], const CultureRule *rule)
     if (f->height_m >= 0.3 && f->height_m <= 100) t.height_m = (float)f->height_m;
     else if (!isnan(f->height_m)) i->report->mended++;
     t.id = id_of(i);
-    return culture_add_tree(i->culture, &t);
+    const int    before = i->culture->trees;
+    const Status status = culture_add_tree(i->culture, &t);
+    return status == STATUS_OK && i->culture->trees > before ? take_back(i, KNOWN_TREE) : status;
 }
 
 /* Which part of a piece is within the square: from t[0] to t[1] of its length; t[0] > t[1]: none. */
@@ -282,7 +303,9 @@ static Status add_point(Import *i, const double p_m[2], double across_m)
     q.base_m = (float)z_m;
     q.heading_rad = isnan(f->direction_rad) ? 0 : (float)f->direction_rad;
     q.id = id_of(i);
-    return culture_add_point(i->culture, &q);
+    const int    before = i->culture->points;
+    const Status status = culture_add_point(i->culture, &q);
+    return status == STATUS_OK && i->culture->points > before ? take_back(i, KNOWN_POINT) : status;
 }
 
 /* A thing whose outline is drawn stands at its middle, as wide as a circle of its area. */
@@ -364,7 +387,7 @@ static Status read_vectors(Import *i)
     if (status == STATUS_OK) status = vectors_each(&end, &vectors, box_deg, take_part, i, "terrain.buildings");
     vectors_close(&vectors);
     culture_rules_close(&i->rules);
-    free(i->corner_m), free(i->ring_m);
+    free(i->corner_m), free(i->ring_m), free(i->known.slot);
     i->report->features = end.features;
     i->report->left[CULTURE_LEFT_OUTSIDE] += (int)fmin((double)end.outside, 1e9);
     i->report->left[CULTURE_LEFT_OTHER] += (int)fmin((double)end.shapeless, 1e9);
@@ -372,25 +395,6 @@ static Status read_vectors(Import *i)
 }
 
 /* ---- all of it ---------------------------------------------------------------------------------------- */
-
-/* Leaves out poles and masts that carry a power line, whose corners are poles. */
-static Status leave_twice(Culture *c, CultureReport *report)
-{
-    static const double same_m = 1;
-    int                 kept = 0;
-    const Status        status = culture_index(c);
-    if (status != STATUS_OK) return status;
-    for (int n = 0; n < c->points; n++) {
-        const CulturePoint *p = &c->point[n];
-        const bool          carries = p->kind == CULTURE_POLE || p->kind == CULTURE_MAST;
-        if (carries && culture_line_near(c, CULTURE_POWER_LINE, p->x_m, p->y_m, same_m) >= 0)
-            report->left[CULTURE_LEFT_TWICE]++;
-        else c->point[kept++] = *p;
-    }
-    if (kept == c->points) return STATUS_OK;
-    c->points = kept;
-    return culture_index(c);
-}
 
 void culture_report_left(char *out, size_t out_size, const CultureReport *r)
 {
@@ -400,7 +404,7 @@ void culture_report_left(char *out, size_t out_size, const CultureReport *r)
         [CULTURE_LEFT_CROSSED] = "with outlines that cross themselves, are smaller than 1 m2 or not on the Earth",
         [CULTURE_LEFT_OTHER] = "of kinds that are not shown",
         [CULTURE_LEFT_HIDDEN] = "in tunnels or underground",
-        [CULTURE_LEFT_TWICE] = "that power lines have themselves"};
+        [CULTURE_LEFT_TWICE] = "that are there already"};
     size_t used = 0;
     *out = 0;
     for (int k = 0; k < CULTURE_LEFTS; k++)
@@ -433,7 +437,7 @@ Status culture_open(Culture *out, CultureReport *report, const CultureFiles *fro
     Status        status = STATUS_OK;
     if (from->buildings && *from->buildings) status = read_vectors(&import);
     if (status == STATUS_OK && from->trees && *from->trees) status = culture_trees_read(&culture, &r, from);
-    if (status == STATUS_OK) status = leave_twice(&culture, &r);
+    if (status == STATUS_OK) status = culture_leave_poles(&culture, &r);
     if (status != STATUS_OK) {
         culture_free(&culture);
         return status;

@@ -28,7 +28,7 @@ typedef enum CultureLeft {
     CULTURE_LEFT_CROSSED, /* an outline that crosses itself, is smaller than 1 m2, or is not on the Earth */
     CULTURE_LEFT_OTHER,   /* land use, areas of water, parts of buildings: no record is of it */
     CULTURE_LEFT_HIDDEN,  /* in a tunnel or underground */
-    CULTURE_LEFT_TWICE,   /* poles and masts that a power line has itself */
+    CULTURE_LEFT_TWICE, /* there already: of two files, or named twice; poles and masts that a power line has itself */
     CULTURE_LEFTS
 } CultureLeft;
 

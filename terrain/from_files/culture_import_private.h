@@ -119,6 +119,25 @@ void culture_rectangle(double side_m[2], double *along_rad, const double (*corne
 /* ENU x and y of a place on the ground. */
 void culture_place(double p_m[2], const CultureFiles *from, double lon_rad, double lat_rad);
 
+/* ---- culture_known.c ---- */
+
+typedef enum KnownList { KNOWN_BUILDING, KNOWN_LINE, KNOWN_POINT, KNOWN_TREE } KnownList;
+typedef struct KnownRecord {
+    int32_t list, number; /* number: in its list, from 1; 0: the slot is free */
+} KnownRecord;
+
+/* Records of a culture by where they are. Zeroes: none; slot is to be freed. */
+typedef struct CultureKnown {
+    size_t       room, count; /* room: a power of two */
+    KnownRecord *slot;        /* [room] */
+} CultureKnown;
+
+/* Adds the last record of a list, which only grows. *again: there is one like it, of its kind and with its corners to
+ * the bit; then it is not added. */
+Status culture_known_take(bool *again, CultureKnown *known, const Culture *culture, KnownList list);
+/* Indexes the culture; leaves out poles and masts that carry a power line, whose corners are poles. */
+Status culture_leave_poles(Culture *culture, CultureReport *report);
+
 /* ---- culture_trees.c ---- */
 
 Status culture_trees_read(Culture *culture, CultureReport *report, const CultureFiles *from);

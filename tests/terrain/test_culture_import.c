@@ -306,6 +306,32 @@ static void a_table_of_trees(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* Two files of neighbouring areas have what lies on the border in common; one that is named twice, all. */
+static void what_two_files_have_is_there_once(void **state)
+{
+    (void)state;
+    static const double one[5][2] = {{0, 0}, {12, 0}, {12, 9}, {0, 9}, {0, 0}};
+    static const double other[5][2] = {{50, 0}, {62, 0}, {62, 9}, {50, 9}, {50, 0}};
+    static const double wall[3][2] = {{0, 40}, {30, 40}, {30, 60}}, tank[1][2] = {{80, 80}}, birch[1][2] = {{90, 80}};
+    Culture             c, all;
+    CultureReport       r;
+    for (int k = 0; k < 2; k++) {
+        begin_file();
+        add_feature("Polygon", "[[", "]]", "\"building\":\"house\",\"height\":7", one, 5);
+        if (k) add_feature("Polygon", "[[", "]]", "\"building\":\"house\"", other, 5);
+        add_feature("LineString", "[", "]", "\"barrier\":\"wall\"", wall, 3);
+        add_feature("Point", "", "", "\"man_made\":\"silo\"", tank, 1);
+        add_feature("Point", "", "", "\"natural\":\"tree\"", birch, 1);
+        end_file(k ? "east.geojson" : "west.geojson");
+    }
+    assert_int_equal(open_names(&c, &r, "west.geojson,east.geojson,west.geojson", NULL), STATUS_OK);
+    CHECK(c.buildings == 2 && c.lines == 1 && c.points == 1 && c.trees == 1 && r.left[CULTURE_LEFT_TWICE] == 8);
+    CHECK(r.height_from[HEIGHT_FROM_FILE] == 1 && r.height_from[HEIGHT_FROM_USE] == 1 && c.corners == 4 + 3 + 4);
+    assert_int_equal(open_names(&all, &r, "east.geojson", NULL), STATUS_OK);
+    CHECK(all.buildings == 2 && all.lines == 1 && r.left[CULTURE_LEFT_TWICE] == 0);
+    culture_free(&c), culture_free(&all);
+}
+
 /* Fifteen hedges of 200 km are 2.5 million plants: more than one culture holds, but no file has a limit of its own. */
 static void a_file_of_more_records_than_a_square_holds_is_good(void **state)
 {
@@ -336,6 +362,7 @@ int main(void)
         cmocka_unit_test(courtyards_are_open),
         cmocka_unit_test(a_table_of_trees),
         cmocka_unit_test(a_file_of_more_records_than_a_square_holds_is_good),
+        cmocka_unit_test(what_two_files_have_is_there_once),
     };
     return cmocka_run_group_tests(tests, open_lab, close_lab);
 }
