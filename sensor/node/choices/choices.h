@@ -156,8 +156,8 @@ double choice_harm_radius(double charge_kg, int damage);
 int    choice_burst_damage(const Culture *culture, int building, const double p_enu[3], double charge_kg);
 /* The building that an entity of this type and model (of the catalog; -1: none) stands for at a place: one of kind 5
  * whose model is a building, within the outline. -1: none. */
-int    choice_building_of(const Culture *culture, const Catalog *catalog, DisEntityType type, int model,
-                          const double p_enu[3]);
+int choice_building_of(const Culture *culture, const Catalog *catalog, DisEntityType type, int model,
+                       const double p_enu[3]);
 /* Of the same square: terrain.buildings, terrain.trees, terrain.clutter, and what the exercise damages.
  * frame_scenery_free after success and failure. */
 Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
