@@ -68,7 +68,8 @@ const char *culture_fabric_name(int fabric);
 const char *culture_line_name(int kind);
 const char *culture_point_name(int kind);
 
-/* Every record as GeoJSON in longitudes and latitudes, with its fields as properties. */
-Status culture_write_geojson(const char *path, const Culture *culture, const LocalFrame *frame);
+/* Every record as GeoJSON in longitudes and latitudes, with its fields as properties. from: of its frame and ground
+ * alone: read with these, records are where they were. */
+Status culture_write_geojson(const char *path, const Culture *culture, const CultureFiles *from);
 
 #endif

@@ -332,6 +332,46 @@ static void what_two_files_have_is_there_once(void **state)
     culture_free(&c), culture_free(&all);
 }
 
+/* The first place of the first feature of a type in GeoJSON, off where it is on the hill, in degrees. */
+static double first_off_deg(const char *json, const char *type, const double p_m[2])
+{
+    double      deg[2], want[2];
+    const char *at = strstr(json, type);
+    CHECK(at && (at = strstr(at, "coordinates\": ")));
+    at += strcspn(at, "[");
+    CHECK(sscanf(at + strspn(at, "["), "%lf, %lf", &deg[0], &deg[1]) == 2);
+    degrees_of(want, p_m[0], p_m[1]);
+    return fmax(fabs(deg[0] - want[0]), fabs(deg[1] - want[1]));
+}
+
+/* Records are written where they are on ground that is high above the frame's plane, 12 km off. */
+static void records_are_written_where_they_are(void **state)
+{
+    (void)state;
+    static const double one[5][2] = {{8000, 9000}, {8012, 9000}, {8012, 9009}, {8000, 9009}, {8000, 9000}};
+    static const double wall[3][2] = {{-9000, 8000}, {-9030, 8000}, {-9030, 8060}}, birch[1][2] = {{8000, -9000}};
+    static char         json[1 << 14];
+    char                path[128];
+    Culture             c;
+    CultureReport       r;
+    begin_file();
+    add_feature("Polygon", "[[", "]]", "\"building\":\"house\"", one, 5);
+    add_feature("LineString", "[", "]", "\"barrier\":\"wall\"", wall, 3);
+    add_feature("Point", "", "", "\"natural\":\"tree\"", birch, 1);
+    end_file("in.geojson");
+    assert_int_equal(open_names(&c, &r, "in.geojson", NULL), STATUS_OK);
+    path_of(path, "out.geojson");
+    assert_int_equal(culture_write_geojson(path, &c, &(CultureFiles){.frame = &frame, .ground = hill}), STATUS_OK);
+    FILE *file = fopen(path, "r");
+    CHECK(file && fread(json, 1, sizeof json - 1, file) > 0);
+    fclose(file);
+    const double polygon = first_off_deg(json, "Polygon", c.corner_m[c.building[0].first_corner]),
+                 line = first_off_deg(json, "LineString", wall[0]), point = first_off_deg(json, "Point", birch[0]);
+    print_message("%.1e, %.1e and %.1e degrees off\n", polygon, line, point);
+    CHECK(polygon < 2e-9 && line < 2e-9 && point < 2e-9); /* of nine decimals; a metre is 1e-5 */
+    culture_free(&c);
+}
+
 /* Fifteen hedges of 200 km are 2.5 million plants: more than one culture holds, but no file has a limit of its own. */
 static void a_file_of_more_records_than_a_square_holds_is_good(void **state)
 {
@@ -363,6 +403,7 @@ int main(void)
         cmocka_unit_test(a_table_of_trees),
         cmocka_unit_test(a_file_of_more_records_than_a_square_holds_is_good),
         cmocka_unit_test(what_two_files_have_is_there_once),
+        cmocka_unit_test(records_are_written_where_they_are),
     };
     return cmocka_run_group_tests(tests, open_lab, close_lab);
 }
