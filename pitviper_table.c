@@ -91,15 +91,20 @@ static Status open_table(Table *out, const char *module, const char *path)
         const int cells = text_split(row, table.columns, line);
         if (table.rows < 0 && cells > 0) table.columns = cells;
         if (cells != table.columns) {
-            if (cells < 0) log_error("%s: %s:%d: a quote is not closed", module, path, number);
-            else log_error("%s: %s:%d: %d columns where the header has %d", module, path, number, cells, table.columns);
+            if (cells < 0)
+                log_error(
+                    "%s: %s:%d: a quote is not closed; it ends on its line, and a quote in a cell is written twice",
+                    module, path, number);
+            else
+                log_error("%s: %s:%d: %d columns where the header has %d; a cell with a comma in it stands in quotes",
+                          module, path, number, cells, table.columns);
             status = STATUS_BAD_VALUE;
             goto fail;
         }
         table.line[++table.rows] = number;
     }
     if (table.rows < 0) {
-        log_error("%s: %s: no header line", module, path);
+        log_error("%s: %s: no header line; the first line that is no comment names the columns", module, path);
         status = STATUS_BAD_VALUE;
         goto fail;
     }

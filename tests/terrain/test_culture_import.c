@@ -296,7 +296,8 @@ static void a_table_of_trees(void **state)
     CHECK(c.trees == 2 && c.tree[1].x_m == -30.5 && c.tree[1].mark == MARK_WHITE && r.left[CULTURE_LEFT_OUTSIDE] == 1);
     culture_free(&c);
     static const char *const bad[] = {"x_m,kind\n1,pine\n",          "x_m,y_m,kind\n1,2,palm\n",      "lat,lon\n91,0\n",
-                                      "x_m,y_m,height_m\n1,2,500\n", "x_m,y_m,marked\n1,2,perhaps\n", "height_m\n3\n"};
+                                      "x_m,y_m,height_m\n1,2,500\n", "x_m,y_m,marked\n1,2,perhaps\n", "height_m\n3\n",
+                                      "lat,lon,x_m,y_m\n47,13,1,2\n"};
     log_set_sink(check_listen, NULL);
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         save("bad.csv", bad[k]);
