@@ -91,15 +91,20 @@ static Status open_table(Table *out, const char *module, const char *path)
         const int cells = text_split(row, table.columns, line);
         if (table.rows < 0 && cells > 0) table.columns = cells;
         if (cells != table.columns) {
-            if (cells < 0) log_error("%s: %s:%d: a quote is not closed", module, path, number);
-            else log_error("%s: %s:%d: %d columns where the header has %d", module, path, number, cells, table.columns);
+            if (cells < 0)
+                log_error(
+                    "%s: %s:%d: a quote is not closed; it ends on its line, and a quote in a cell is written twice",
+                    module, path, number);
+            else
+                log_error("%s: %s:%d: %d columns where the header has %d; a cell with a comma in it stands in quotes",
+                          module, path, number, cells, table.columns);
             status = STATUS_BAD_VALUE;
             goto fail;
         }
         table.line[++table.rows] = number;
     }
     if (table.rows < 0) {
-        log_error("%s: %s: no header line", module, path);
+        log_error("%s: %s: no header line; the first line that is no comment names the columns", module, path);
         status = STATUS_BAD_VALUE;
         goto fail;
     }
@@ -206,16 +211,21 @@ Status table_rows_find(int *row, const TableRows *rows, const char *name, const 
                        const char *other)
 {
     char      known[512] = "";
+    int       found = -1;
     WordMeant meant = word_meant(name);
     for (int i = 0; i < rows->table.rows; i++) {
         const char  *here = table_rows_text(rows, i, "name");
         const size_t length = strlen(known);
         if (strcmp(here, name) == 0) {
-            *row = i;
-            return STATUS_OK;
+            if (found >= 0) return table_rows_refuse(rows, i, "name", "another name than those of the rows above");
+            found = i;
         }
         snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "", here);
         word_consider(&meant, here);
+    }
+    if (found >= 0) {
+        *row = found;
+        return STATUS_OK;
     }
     word_consider(&meant, other);
     log_error("%s: %s: no %s named '%s'%s; there are: %s%s", rows->format->module, rows->table.path, what, name, beside,

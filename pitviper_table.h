@@ -77,9 +77,9 @@ Status table_rows_get(void *out, const TableRows *rows, int row);
 /* Whether the file has that column; the text of a cell, "" where it has not. */
 bool        table_rows_has(const TableRows *rows, const char *column);
 const char *table_rows_text(const TableRows *rows, int row, const char *column);
-/* The first row of that name, in the column `name`; else logs those that there are, and the nearest. what: "sensor",
- * for the message; beside: where else it was looked for, " (nor in FILE)", or ""; other: a name without a row, or "".
- */
+/* The row of that name, in the column `name`; else logs those that there are, and the nearest. Two of that name are
+ * refused. what: "sensor", for the message; beside: where else it was looked for, " (nor in FILE)", or ""; other: a
+ * name without a row, or "". */
 Status table_rows_find(int *row, const TableRows *rows, const char *name, const char *what, const char *beside,
                        const char *other);
 

@@ -109,7 +109,9 @@ const char *flight_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
     Engagement   e = {.ranged = or_else(&in[at_ranged], 1) != 0, .until_s = or_else(&in[at_until], INFINITY)};
     const double azimuth = in[at_azimuth].number * rad_per_deg, elevation = in[at_elevation].number * rad_per_deg;
     const double speed_mps = or_else(&in[at_speed], missile->launch_mps);
-    if (!inside(speed_mps, 0, 3000)) return "speed_mps must be 0 .. 3000";
+    if (!inside(speed_mps, flight_least_mps, 3000))
+        return "speed_mps (or launch_mps of the missile's row) must be 0.001 .. 3000: without speed a launch has no "
+               "direction";
     if (!inside(e.until_s, 0, INFINITY)) return "until_s must be 0 or later";
     const double ahead_enu[3] = {speed_mps * sin(azimuth) * cos(elevation), speed_mps * cos(azimuth) * cos(elevation),
                                  speed_mps * sin(elevation)};

@@ -90,6 +90,9 @@ static void keep_sample(void *user, const FlightState *state)
     }
 }
 
+/* The velocity of a launch is its direction too. What stands or hovers moves slower than this, whichever way. */
+static const double least_launch_mps = 1;
+
 /* The direction of launch: to the target, or steeper by the loft's angle; and the speed of the row, which a launcher
  * that is faster already has. */
 static void launch_velocity(double v_ecef_mps[3], const Scene *scene, const Missile *m, const double p_ecef[3],
@@ -204,6 +207,14 @@ Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double a
     round->fire_s = (double)e.tick * world.step_s;
     ecef_from_enu(e.p_ecef, frame, round->launch_enu);
     launch_velocity(e.v_ecef_mps, &scene, &m, e.p_ecef, round->fire_s);
+    const double speed_mps = v3_length(e.v_ecef_mps);
+    if (!(speed_mps >= least_launch_mps)) {
+        log_error(
+            "scenario: %s:%d: shots: %s leaves its launcher at %.2g m/s, too slow to have a direction; next: a row "
+            "of missiles with a launch_mps of at least %g",
+            cast->scenario->path, shot->line, m.name, speed_mps, least_launch_mps);
+        return STATUS_BAD_VALUE;
+    }
     target_at(target, v, a, &scene, round->fire_s);
     v3_sub(line, target, e.p_ecef);
     sight_error(e.aim_ecef, cast, number, line, shot->sight_error_m);

@@ -91,6 +91,10 @@ typedef struct FlightCommand {
     double        lateral_ecef_mps2[3]; /* demanded at this grid point, before limits */
 } FlightCommand;
 
+/* Below this speed through the air there is no direction of flight: the body's axis stands for it. */
+static const double flight_least_mps = 1e-3;
+
+/* The velocity is the direction of the launch too: at least flight_least_mps. */
 void flight_launch(FlightState *out, const Missile *missile, const FlightWorld *world, int64_t tick,
                    const double p_ecef[3], const double v_ecef_mps[3]);
 void flight_command(FlightCommand *out, const Missile *missile, const FlightWorld *world, const FlightState *state,

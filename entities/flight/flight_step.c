@@ -5,8 +5,6 @@
 #include "terrain/earth/gravity.h"
 #include "terrain/weather/standard_atmosphere.h"
 
-/* Below this speed through the air there is no direction of flight: the body's axis stands for it. */
-static const double least_speed_mps = 1e-3;
 static const double near_m = 6e6, far_m = 2e7; /* of the Earth's centre */
 
 /* ---- the missile over time ----------------------------------------------------------------------- */
@@ -75,7 +73,7 @@ void flight_instant(FlightInstant *at, const FlightWorld *world, const FlightSta
     at->speed_mps = v3_length(air_mps);
     for (int k = 0; k < 3; k++)
         at->ahead_ecef[k] =
-            at->speed_mps > least_speed_mps ? air_mps[k] / at->speed_mps : state->r_ecef_from_body[3 * k];
+            at->speed_mps > flight_least_mps ? air_mps[k] / at->speed_mps : state->r_ecef_from_body[3 * k];
     earth_gravitation(at->falls_ecef_mps2, at->p_ecef);
     v3_scale(at->falls_ecef_mps2, world->gravity, at->falls_ecef_mps2);
     earth_turning(at->falls_ecef_mps2, at->p_ecef, at->v_ecef_mps, world->turning * earth_turn_rps);
@@ -142,7 +140,7 @@ static void slope(double out[parts], const double y[parts], double t_s, const Le
 
     /* the autopilot's axes turn with the velocity, without roll: what is across it stays across it */
     v3_cross(turn_rps, at.ahead_ecef, f.a_ecef_mps2);
-    v3_scale(turn_rps, at.speed_mps > least_speed_mps ? 1 / at.speed_mps : 0, turn_rps);
+    v3_scale(turn_rps, at.speed_mps > flight_least_mps ? 1 / at.speed_mps : 0, turn_rps);
     v3_cross(carried, turn_rps, y + 6);
     double *rate = out + 6, *rate2 = out + 9;
     for (int k = 0; k < 3; k++) {

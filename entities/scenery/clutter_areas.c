@@ -23,8 +23,9 @@ static bool fits(const ClutterWork *work, const ClutterThing *t)
 static Status place_group(ClutterWork *work, int r, uint64_t h, double x_m, double y_m)
 {
     const ClutterRow *row = &work->table.row[r];
-    const int         low = (int)row->group_low, high = (int)row->group_high;
-    const int         count = low + (int)(clutter_unit(h, 1) * (high - low + 1));
+    if (clutter_is_full(work)) return STATUS_OK;
+    const int low = (int)row->group_low, high = (int)row->group_high;
+    const int count = low + (int)(clutter_unit(h, 1) * (high - low + 1));
     /* members of a group are of one kind and size: a flock, a heap of bales */
     const int variant = clutter_variant_of(work, r, h);
     Status    status = STATUS_OK;

@@ -45,7 +45,7 @@ static Status place_beside(ClutterWork *work, const Line *line, int r)
     const int         count =
         clutter_poisson(work->config->density * row->density * 1e-3 * line->length_m, clutter_unit(of, 0));
     Status status = STATUS_OK;
-    for (int k = 0; k < count && status == STATUS_OK; k++) {
+    for (int k = 0; k < count && status == STATUS_OK && !clutter_is_full(work); k++) {
         const uint64_t h = invented_hash(of, k + 1, 9);
         ClutterThing   t = {.rank = h, .row = r, .variant = clutter_variant_of(work, r, h)};
         const float   *size_m = work->variant[t.variant].size_m;
@@ -139,6 +139,7 @@ static Status place_riders(ClutterWork *work, const Line *whole, int a, int b)
     const int first = work->paths;
     Status    status = path_side(work, &line, 0, line.count - 1);
     if (status == STATUS_OK) status = path_side(work, &line, line.count - 1, 0);
+    if (work->paths - first < 2) return status; /* beyond the ground */
     const double speed_mps = clutter_speed_mps[line.kind] * (0.8 + 0.4 * clutter_unit(key, 1));
     for (int k = 0; k < riders && status == STATUS_OK; k++) {
         ClutterThing *t = &rider[k];

@@ -54,7 +54,7 @@ static Status place_yard(ClutterWork *work, const Yard *yard, ClutterWhere where
         if (row->where != where) continue;
         const uint64_t of = clutter_hash(work, r, (int64_t)yard->key, 1, 0);
         const int      count = clutter_poisson(work->config->density * row->density, clutter_unit(of, 0));
-        for (int k = 0; k < count && status == STATUS_OK; k++) {
+        for (int k = 0; k < count && status == STATUS_OK && !clutter_is_full(work); k++) {
             const uint64_t h = invented_hash(of, k + 1, 9);
             ClutterThing   t = {.rank = h, .row = r, .variant = clutter_variant_of(work, r, h)};
             if (find_place(&t, work, yard, h) && clutter_in_square(work->config, t.x_m, t.y_m, clutter_margin_m))
@@ -101,7 +101,7 @@ static Status place_open(ClutterWork *work, const Strip *s, int r)
     const double        mean = work->config->density * work->table.row[r].density * 1e-4 * s->long_m * s->wide_m;
     const int           count = clutter_poisson(mean, clutter_unit(of, 0));
     Status              status = STATUS_OK;
-    for (int k = 0; k < count && status == STATUS_OK; k++) {
+    for (int k = 0; k < count && status == STATUS_OK && !clutter_is_full(work); k++) {
         const uint64_t h = invented_hash(of, k + 1, 9);
         ClutterThing   t = {.rank = h, .row = r, .variant = clutter_variant_of(work, r, h)};
         const double   quarter_rad = 0.5 * pi_rad * floor(4 * clutter_unit(h, 1));

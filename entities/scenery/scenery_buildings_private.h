@@ -9,7 +9,6 @@
 
 /* ---- outlines (scenery_outline.c) ----------------------------------------------------------------- */
 
-double outline_area_m2(const double (*p)[2], int n);
 /* Cuts a simple counter-clockwise polygon into n - 2 triangles (indices, counter-clockwise), by ears, the least
  * slender first. false: a triangle had to be turned over (a polygon that crosses itself); it still has n - 2 triangles
  * then. Without memory: false, status STATUS_NO_MEMORY, which is else left alone. O(n^2) for usual outlines. */

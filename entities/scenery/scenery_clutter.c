@@ -3,7 +3,6 @@
 
 #include <stdlib.h>
 
-enum { most_things = 1 << 19 };
 static const double widest_square_m = 65536;
 
 ClutterConfig clutter_default_config(void)
@@ -43,7 +42,7 @@ Status clutter_add(ClutterWork *work, ClutterThing t)
 {
     const ClutterRow *row = &work->table.row[t.row];
     const float      *size_m = work->variant[t.variant].size_m;
-    if (work->things >= most_things) return STATUS_OK;
+    if (clutter_is_full(work)) return STATUS_OK;
     if (row->reach_m > 0 && hypot(t.x_m, t.y_m) > row->reach_m) return STATUS_OK;
     if (work->things == work->room) {
         const int room = work->room + work->room / 2 + 1024;
@@ -96,7 +95,7 @@ Status scenery_add_clutter(Scenery *scenery, const ClutterConfig *config)
     if (status == STATUS_OK) status = clutter_place_yards(work);
     if (status == STATUS_OK) status = clutter_place_lines(work);
     if (status == STATUS_OK) {
-        if (work->things == most_things) log_warn("clutter: more than %d things; next: a lower density", most_things);
+        if (clutter_is_full(work)) log_warn("clutter: more than %d things; next: a lower density", clutter_most_things);
         status = clutter_settle(work);
     }
     if (status == STATUS_OK) status = clutter_into_scenery(scenery, work);

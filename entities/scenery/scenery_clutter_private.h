@@ -172,7 +172,10 @@ static inline double clutter_unit(uint64_t h, uint64_t k) { return invented_unit
 /* Poisson number of this mean, of a uniform; at most 10000. */
 int clutter_poisson(double mean, double unit);
 int clutter_variant_of(const ClutterWork *work, int row, uint64_t h);
-/* Appends a thing; draws what it does from its rank. */
+/* Whether there are as many things as a square may have, before conflicts: no more are looked for. */
+enum { clutter_most_things = 1 << 19 };
+static inline bool clutter_is_full(const ClutterWork *work) { return work->things >= clutter_most_things; }
+/* Appends a thing; draws what it does from its rank. Nothing where it is full. */
 Status clutter_add(ClutterWork *work, ClutterThing thing);
 /* Whether a place is in the square that is asked for, grown by more_m. */
 bool clutter_in_square(const ClutterConfig *config, double x_m, double y_m, double more_m);

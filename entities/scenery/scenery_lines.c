@@ -178,10 +178,10 @@ static void make_wire_fence(const Run *r)
 }
 
 /* Wires on poles with a crossarm; of tall lines on lattice towers with two. A wire hangs as a parabola of a fiftieth of
- * its span. */
+ * its span, but by no more than a third of the poles' height: files leave out poles that stand in a straight line. */
 static void make_power_line(const Run *r)
 {
-    static const double sag = 0.02;
+    static const double sag = 0.02, deepest = 0.35; /* of the span, of the height */
     const double        high_m = or_usual(r->line->height_m, 9);
     const bool          tall = high_m > 16;
     const double        arm_m = tall ? 0.14 * high_m : 1.1, radius_m = tall ? 0.014 : 0.006;
@@ -207,10 +207,11 @@ static void make_power_line(const Run *r)
             const Station *a = &r->station[k], *b = &r->station[k + 1];
             Station        part[sag_pieces + 1];
             const double   span_m = hypot(b->p[0] - a->p[0], b->p[1] - a->p[1]);
+            const double   sag_m = fmin(sag * span_m, deepest * high_m);
             for (int i = 0; i <= sag_pieces; i++) {
                 const double t = (double)i / sag_pieces;
                 for (int c = 0; c < 3; c++) part[i].p[c] = i < sag_pieces ? a->p[c] + t * (b->p[c] - a->p[c]) : b->p[c];
-                part[i].p[2] += z - 4 * sag * span_m * t * (1 - t);
+                part[i].p[2] += z - 4 * sag_m * t * (1 - t);
                 for (int c = 0; c < 2; c++) {
                     const double la = a->left[c] / hypot(a->left[0], a->left[1]),
                                  lb = b->left[c] / hypot(b->left[0], b->left[1]);

@@ -9,13 +9,6 @@ static double turn_m2(const double a[2], const double b[2], const double c[2])
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-double outline_area_m2(const double (*p)[2], int n)
-{
-    double sum = 0;
-    for (int k = 1; k + 1 < n; k++) sum += turn_m2(p[0], p[k], p[k + 1]);
-    return 0.5 * sum;
-}
-
 static double square_m2(const double a[2], const double b[2])
 {
     return (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]);

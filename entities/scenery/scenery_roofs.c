@@ -55,7 +55,7 @@ static void holed_triangle(BuildingWork *w, const double (*top)[3], const double
         side_m[i] = hypot(a[0] - b[0], a[1] - b[1]), around_m += side_m[i];
     }
     const double plan[3][2] = {{top[0][0], top[0][1]}, {top[1][0], top[1][1]}, {top[2][0], top[2][1]}};
-    const double radius_m = fmin(2 * outline_area_m2(plan, 3) / around_m, 3);
+    const double radius_m = fmin(2 * culture_area_m2(plan, 3) / around_m, 3);
     for (int c = 0; c < 3; c++)
         middle[c] = (side_m[0] * top[0][c] + side_m[1] * top[1][c] + side_m[2] * top[2][c]) / around_m;
     for (int k = 0; k < 6; k++) {
@@ -105,7 +105,7 @@ static void slab_face(BuildingWork *w, const double (*node)[3], const int *index
         for (int t = 0; t < count - 2; t++) {
             double p[3][2];
             for (int k = 0; k < 3; k++) memcpy(p[k], flat[triangle[t][k]], sizeof p[k]);
-            const double m2 = outline_area_m2((const double(*)[2])p, 3);
+            const double m2 = culture_area_m2((const double(*)[2])p, 3);
             if (m2 > most_m2) most_m2 = m2, largest = t;
         }
     for (int t = 0; t < count - 2 && largest >= 0; t++) {
@@ -212,7 +212,7 @@ static void inner_place(double out[2], const BuildingWork *w)
             const double corner[3][2] = {{w->p[t[k][0]][0], w->p[t[k][0]][1]},
                                          {w->p[t[k][1]][0], w->p[t[k][1]][1]},
                                          {w->p[t[k][2]][0], w->p[t[k][2]][1]}};
-            const double area = outline_area_m2(corner, 3);
+            const double area = culture_area_m2(corner, 3);
             if (area <= best) continue;
             best = area;
             for (int c = 0; c < 2; c++) out[c] = (corner[0][c] + corner[1][c] + corner[2][c]) / 3;
@@ -433,7 +433,7 @@ static bool plan_roof(BuildingWork *w, Outline spare, const bool *gable)
 static bool pyramid_roof(BuildingWork *w)
 {
     const int n = w->n;
-    double    apex[2] = {0, 0}, area = outline_area_m2((const double(*)[2])w->p, n), nearest = INFINITY, farthest = 0;
+    double    apex[2] = {0, 0}, area = culture_area_m2((const double(*)[2])w->p, n), nearest = INFINITY, farthest = 0;
     for (int k = 0; k < n; k++) { /* centroid */
         const double *o = w->p[0], *a = w->p[k], *b = w->p[(k + 1) % n];
         const double  twice = (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);

@@ -64,7 +64,7 @@ static void heaps_inside(BuildingWork *w, int rubble, double z)
                 around_m += side_m;
                 for (int c = 0; c < 2; c++) middle[c] += side_m * corner[i][c];
             }
-            const double radius_m = 2 * outline_area_m2((const double(*)[2])corner, 3) / around_m;
+            const double radius_m = 2 * culture_area_m2((const double(*)[2])corner, 3) / around_m;
             if (radius_m < least_m) continue;
             for (int c = 0; c < 2; c++) middle[c] /= around_m;
             const double half[2] = {0.95 * (radius_m - wall_m), 0.95 * (radius_m - wall_m)};

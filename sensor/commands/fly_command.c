@@ -23,6 +23,7 @@ typedef struct Options {
     const char *scenario, *out, *missile, *plot;
     bool        overwrite;
     int         seeds, set_count;
+    bool        waits; /* --limit or --start is given */
     const char *set[max_sets];
     FlyLoop     loop;
 } Options;
@@ -81,6 +82,9 @@ static int parse_wrong(const Options *o)
     if (o->loop.recogniser && o->loop.sights)
         return command_line_wrong("fly", "--sights has the answers of a flight before: without --recogniser");
     if (o->loop.sights && o->seeds > 1) return command_line_wrong("fly", "--sights is of one flight: without --seeds");
+    if (o->waits && !o->loop.recogniser)
+        return command_line_wrong("fly",
+                                  "--limit and --start are of a recogniser's answers: with --recogniser COMMAND");
     if (o->loop.given_count > 0 && !fly_loop_asked(&o->loop))
         return command_line_wrong("fly", "options after -- are of frames: with --frames DIR or --recogniser COMMAND");
     return 0;
@@ -156,9 +160,11 @@ static int parse(Options *o, int argc, char **argv)
             break;
         case LIMIT:
             ok = seconds(&o->loop.limit_s, "limit", optarg);
+            o->waits = true;
             break;
         case START:
             ok = seconds(&o->loop.start_s, "start", optarg);
+            o->waits = true;
             break;
         case SIGHTS:
             o->loop.sights = optarg;

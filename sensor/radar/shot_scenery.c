@@ -346,6 +346,7 @@ static Status know_parts(FaceTask *task, RadarShot *shot, int object)
     const SceneryObject *o = &scenery->object[object];
     const SeekerRadar   *r = shot->radar;
     const Model         *m = &scenery->model[o->model];
+    const PosedEntity   *posed = scenery_frame_posed(shot->scenery->frame, object); /* with its damage by now */
     const int            records = scenery->part_first ? scenery->part_first[o->model] : -1;
     FacePart            *part = arena_alloc(shot->arena, (size_t)m->part_count + 1, sizeof *part);
     NodePose            *node = arena_alloc(shot->arena, (size_t)m->node_count + 1, sizeof *node);
@@ -354,20 +355,16 @@ static Status know_parts(FaceTask *task, RadarShot *shot, int object)
     for (int p = 0; p < m->part_count; p++) {
         const ModelPart *of = &m->part[p];
         const char      *material =
-            o->damage && *of->damage_material[o->damage] ? of->damage_material[o->damage] : of->material;
+            posed->damage && *of->damage_material[posed->damage] ? of->damage_material[posed->damage] : of->material;
         const int known = radar_materials_find(&r->materials, material);
-        if (o->damage && of->damage_hidden >> o->damage & 1) continue;
+        if (of->damage_hidden >> posed->damage & 1) continue;
         const uint64_t record = records >= 0 ? scenery->part_of[records + p] : 0;
         const Status   status = shot_source(&part[p].source, shot, object, record ? record : o->id);
         if (status != STATUS_OK) return status;
         radar_surface(&part[p].surface, &r->materials.material[known >= 0 ? known : 0], shot->preset->wave.centre_hz);
         part[p].row = facade_row(&r->facades, material);
     }
-    *task = (FaceTask){.posed = scenery_frame_posed(shot->scenery->frame, object),
-                       .model = m,
-                       .part = part,
-                       .node = node,
-                       .id = o->id};
+    *task = (FaceTask){.posed = posed, .model = m, .part = part, .node = node, .id = o->id};
     return STATUS_OK;
 }
 

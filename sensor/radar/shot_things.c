@@ -2,7 +2,7 @@
  * to it, of the mean cross section of its shape and aspect; and what faces and things of scenery share. */
 #include "sensor/radar/shot_scenery_private.h"
 
-enum { thing_points = 12, stream_things = 0x3e200000, sources_grow = 256 };
+enum { thing_points = 12, stream_things = 0x3e200000, sources_first = 256 };
 
 /* ---- what faces and things share ------------------------------------------------------------------- */
 
@@ -22,8 +22,10 @@ Status shot_source(int *out, RadarShot *shot, int object, uint64_t id)
             *out = k;
             return STATUS_OK;
         }
-    if (f->sources % sources_grow == 0) {
-        RadarSource *grown = arena_alloc(shot->arena, (size_t)(f->sources + sources_grow), sizeof *grown);
+    if (f->sources == 0 ||
+        (f->sources >= sources_first && (f->sources & (f->sources - 1)) == 0)) { /* full: twice as many */
+        const size_t room = f->sources ? 2 * (size_t)f->sources : sources_first;
+        RadarSource *grown = arena_alloc(shot->arena, room, sizeof *grown);
         if (!grown) return STATUS_NO_MEMORY;
         if (f->sources > 0) memcpy(grown, f->source, (size_t)f->sources * sizeof *grown);
         f->source = grown;

@@ -18,14 +18,6 @@ static const double *corner_of(const Ring *r, int k)
     return r->p[r->turned ? (r->n - k) % r->n : k];
 }
 
-static double area_m2(const double (*p)[2], int n)
-{
-    double twice = 0;
-    for (int k = 1; k + 1 < n; k++)
-        twice += (p[k][0] - p[0][0]) * (p[k + 1][1] - p[0][1]) - (p[k][1] - p[0][1]) * (p[k + 1][0] - p[0][0]);
-    return 0.5 * twice;
-}
-
 /* How far a ray from o along d (unit) meets the edge from a to b, and where on it (0 .. 1); INFINITY: it does not. */
 static double meets_m(double *share, const double o[2], const double d[2], const double a[2], const double b[2])
 {
@@ -111,7 +103,7 @@ static int gather(Ring out[courtyards_most], const double (*ring_m)[2], const in
     int count = 0;
     for (int k = 0; k < rings; k++) {
         Ring         r = {.p = ring_m + first[k], .n = first[k + 1] - first[k]};
-        const double of_m2 = r.n >= 3 ? area_m2(r.p, r.n) : 0;
+        const double of_m2 = r.n >= 3 ? culture_area_m2(r.p, r.n) : 0;
         int          at;
         r.turned = of_m2 > 0, r.area_m2 = fabs(of_m2);
         if (!(r.area_m2 >= courtyard_least_m2)) continue;
@@ -129,7 +121,7 @@ int courtyards_join(double (*p)[2], int corners, const double (*ring_m)[2], cons
     int  count = gather(ring, ring_m, first, rings);
     *joined = 0;
     if (corners < 3) return corners;
-    const bool turned = area_m2((const double(*)[2])p, corners) < 0;
+    const bool turned = culture_area_m2((const double(*)[2])p, corners) < 0;
     for (int i = 1, k = corners - 1; turned && i < k; i++, k--)
         for (int c = 0; c < 2; c++) {
             const double swap = p[i][c];

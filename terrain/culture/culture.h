@@ -130,6 +130,9 @@ static const double culture_farthest_m = 1e6;                         /* from th
 static const float  culture_highest_m = 850, culture_widest_m = 1000; /* of anything; of lines and points */
 
 void culture_free(Culture *culture); /* accepts zeroes */
+/* Of an outline, signed: positive when its corners go counter-clockwise. About its first corner, so that far ones lose
+ * no digits; 0 of fewer than three. */
+double culture_area_m2(const double (*corner_m)[2], int corners);
 /* Append a record with its corners; first_corner and corners are set. An outline is turned counter-clockwise, repeated
  * and collinear corners are dropped; one that crosses itself, has no area (under 1 m2) or is not finite is left out and
  * counted, as is any record with a number outside the ranges above. STATUS_NO_MEMORY, or beyond the limits above:

@@ -5,8 +5,6 @@
 #include "terrain/culture/culture.h"
 
 void culture_index_free(Culture *culture);
-/* Signed, positive when the corners go counter-clockwise. */
-double culture_area_m2(const double (*corner_m)[2], int corners);
 
 /* Which records are near some place: [buildings], [lines], [points]. */
 typedef struct CultureMarks {

@@ -4,16 +4,18 @@
 #include "terrain/woods/plant.h"
 
 typedef struct Drawing {
-    const Culture    *culture;
-    const LocalFrame *frame;
+    const Culture      *culture;
+    const CultureFiles *from; /* whose frame, and ground */
 } Drawing;
 
-/* Longitude and latitude of a place in ENU, at the height z. */
-static void put_place(FILE *to, const LocalFrame *frame, double x_m, double y_m, double z_m)
+/* Longitude and latitude of a place in ENU on the ground, as culture_place reads it; where there is none, on the plane
+ * of the frame. */
+static void put_place(FILE *to, const CultureFiles *from, double x_m, double y_m)
 {
-    double   p_ecef[3];
-    Geodetic place = {0};
-    ecef_from_enu(p_ecef, frame, (const double[3]){x_m, y_m, z_m});
+    const double z_m = from->ground ? from->ground(from->user, x_m, y_m) : 0;
+    double       p_ecef[3];
+    Geodetic     place = {0};
+    ecef_from_enu(p_ecef, from->frame, (const double[3]){x_m, y_m, isfinite(z_m) ? z_m : 0});
     (void)geodetic_from_ecef(&place, p_ecef);
     fprintf(to, "[%.9f, %.9f]", place.lon_rad / rad_per_deg, place.lat_rad / rad_per_deg);
 }
@@ -31,7 +33,7 @@ static void put_building(FILE *to, const Drawing *d, const Building *b)
     for (int k = 0; k <= b->corners; k++) {
         const double *p = d->culture->corner_m[b->first_corner + k % b->corners];
         if (k) fputs(", ", to);
-        put_place(to, d->frame, p[0], p[1], (double)b->base_m);
+        put_place(to, d->from, p[0], p[1]);
     }
     fprintf(
         to,
@@ -49,7 +51,7 @@ static void put_line(FILE *to, const Drawing *d, const CultureLine *l)
     for (int k = 0; k < l->corners; k++) {
         const double *p = d->culture->corner_m[l->first_corner + k];
         if (k) fputs(", ", to);
-        put_place(to, d->frame, p[0], p[1], 0);
+        put_place(to, d->from, p[0], p[1]);
     }
     fprintf(to,
             "]}, \"properties\": {\"record\": \"line\", \"kind\": \"%s\", \"width_m\": %.3f, \"height_m\": %.3f, "
@@ -75,7 +77,7 @@ static void put_all(FILE *to, const void *user)
     for (int n = 0; n < c->points; n++) {
         const CulturePoint *p = &c->point[n];
         begin(to, &more, p->id, "Point");
-        put_place(to, d->frame, p->x_m, p->y_m, (double)p->base_m);
+        put_place(to, d->from, p->x_m, p->y_m);
         fprintf(
             to,
             "}, \"properties\": {\"record\": \"point\", \"kind\": \"%s\", \"base_m\": %.3f, \"size_m\": [%.3f, %.3f, "
@@ -86,7 +88,7 @@ static void put_all(FILE *to, const void *user)
     for (int n = 0; n < c->trees; n++) {
         const CultureTree *t = &c->tree[n];
         begin(to, &more, t->id, "Point");
-        put_place(to, d->frame, t->x_m, t->y_m, 0);
+        put_place(to, d->from, t->x_m, t->y_m);
         fprintf(to,
                 "}, \"properties\": {\"record\": \"tree\", \"kind\": \"%s\", \"height_m\": %.2f, \"marked\": \"%s\"}}",
                 plant_name((PlantKind)t->kind), (double)t->height_m, plant_mark_name((PlantMark)t->mark));
@@ -94,7 +96,7 @@ static void put_all(FILE *to, const void *user)
     fputs("\n]}\n", to);
 }
 
-Status culture_write_geojson(const char *path, const Culture *culture, const LocalFrame *frame)
+Status culture_write_geojson(const char *path, const Culture *culture, const CultureFiles *from)
 {
-    return text_write_file("terrain culture", path, put_all, &(Drawing){culture, frame});
+    return text_write_file("terrain culture", path, put_all, &(Drawing){culture, from});
 }

@@ -14,7 +14,9 @@ typedef struct Import {
     double (*ring_m)[2];   /* [vector_most_corners] of its inner rings */
     const VectorPart *part;
     CultureFacts      facts;
-    int               made; /* records of this part so far */
+    CultureKnown      known;
+    int               made;      /* records of this part so far */
+    int64_t           passed[4]; /* buildings, lines, points, trees that were made and are not kept */
 } Import;
 
 /* ---- places ----------------------------------------------------------------------------------------- */
@@ -65,6 +67,20 @@ static uint64_t id_of(Import *i)
     return culture_mix(seed, number, sizeof number);
 }
 
+/* Takes the last record of a list back where there is one like it. */
+static Status take_back(Import *i, KnownList list)
+{
+    Culture     *c = i->culture;
+    int *const   count[] = {&c->buildings, &c->lines, &c->points, &c->trees};
+    bool         again = false;
+    const Status status = i->from->passes ? STATUS_OK : culture_known_take(&again, &i->known, c, list);
+    if (!again) return status;
+    if (list == KNOWN_BUILDING) c->corners = c->building[c->buildings - 1].first_corner;
+    if (list == KNOWN_LINE) c->corners = c->line[c->lines - 1].first_corner;
+    --*count[list];
+    return leave(i, CULTURE_LEFT_TWICE);
+}
+
 /* ---- buildings -------------------------------------------------------------------------------------- */
 
 double culture_floor_m(const CultureFiles *from, const double (*p)[2], int corners)
@@ -83,14 +99,6 @@ double culture_floor_m(const CultureFiles *from, const double (*p)[2], int corne
         }
     }
     return low_m;
-}
-
-static double area_of(const double (*p)[2], int corners)
-{
-    double sum = 0;
-    for (int k = 1; k + 1 < corners; k++)
-        sum += (p[k][0] - p[0][0]) * (p[k + 1][1] - p[0][1]) - (p[k][1] - p[0][1]) * (p[k + 1][0] - p[0][0]);
-    return 0.5 * sum;
 }
 
 static bool outline_is_within(const Import *i)
@@ -138,9 +146,9 @@ static Status add_building(Import *i)
     if (n == 0 || n > culture_outline_most) return leave(i, CULTURE_LEFT_LARGE);
     if (!all_on_earth(i)) return leave(i, CULTURE_LEFT_CROSSED);
     if (!outline_is_within(i)) return leave(i, CULTURE_LEFT_OUTSIDE);
-    if (!(fabs(area_of(p, n)) <= most_m2)) return leave(i, CULTURE_LEFT_LARGE);
+    if (!(fabs(culture_area_m2(p, n)) <= most_m2)) return leave(i, CULTURE_LEFT_LARGE);
     if (i->part->rings > 0) n = with_courtyards(&courtyards, i);
-    const double area_m2 = fabs(area_of(p, n));
+    const double area_m2 = fabs(culture_area_m2(p, n));
     const double base_m = culture_floor_m(i->from, p, n);
     if (isnan(base_m)) return leave(i, CULTURE_LEFT_OUTSIDE);
     culture_building_make(&b, &from, &mended, &i->facts, p, n, area_m2, courtyards > 0);
@@ -152,6 +160,8 @@ static Status add_building(Import *i)
         i->culture->left_out = left; /* counted with all others at the end */
         return leave(i, CULTURE_LEFT_CROSSED);
     }
+    const Status known = take_back(i, KNOWN_BUILDING);
+    if (known != STATUS_OK || i->culture->buildings == before) return known;
     r->height_from[from]++, r->mended += mended, r->unread += i->facts.unread, r->courtyards += courtyards;
     r->built_over += i->part->holes - courtyards;
     i->culture->repaired += mended > 0;
@@ -218,7 +228,9 @@ static Status add_line(Import *i, const double (*p)[2], int corners)
 {
     CultureLine l = line_of(i, rule_of(i));
     l.id = id_of(i);
-    return culture_add_line(i->culture, &l, p, corners);
+    const int    before = i->culture->lines;
+    const Status status = culture_add_line(i->culture, &l, p, corners);
+    return status == STATUS_OK && i->culture->lines > before ? take_back(i, KNOWN_LINE) : status;
 }
 
 /* ---- trees ------------------------------------------------------------------------------------------ */
@@ -232,7 +244,9 @@ static Status add_tree(Import *i, const double p_m[2], const CultureRule *rule)
     if (f->height_m >= 0.3 && f->height_m <= 100) t.height_m = (float)f->height_m;
     else if (!isnan(f->height_m)) i->report->mended++;
     t.id = id_of(i);
-    return culture_add_tree(i->culture, &t);
+    const int    before = i->culture->trees;
+    const Status status = culture_add_tree(i->culture, &t);
+    return status == STATUS_OK && i->culture->trees > before ? take_back(i, KNOWN_TREE) : status;
 }
 
 /* Which part of a piece is within the square: from t[0] to t[1] of its length; t[0] > t[1]: none. */
@@ -289,7 +303,9 @@ static Status add_point(Import *i, const double p_m[2], double across_m)
     q.base_m = (float)z_m;
     q.heading_rad = isnan(f->direction_rad) ? 0 : (float)f->direction_rad;
     q.id = id_of(i);
-    return culture_add_point(i->culture, &q);
+    const int    before = i->culture->points;
+    const Status status = culture_add_point(i->culture, &q);
+    return status == STATUS_OK && i->culture->points > before ? take_back(i, KNOWN_POINT) : status;
 }
 
 /* A thing whose outline is drawn stands at its middle, as wide as a circle of its area. */
@@ -299,7 +315,7 @@ static Status add_round(Import *i)
     const int n = i->part->corners;
     double    middle[2] = {0, 0};
     if (n == 0 || !all_on_earth(i)) return leave(i, CULTURE_LEFT_CROSSED);
-    const double across_m = 2 * sqrt(fabs(area_of(p, n)) / pi_rad);
+    const double across_m = 2 * sqrt(fabs(culture_area_m2(p, n)) / pi_rad);
     for (int k = 0; k < n; k++)
         for (int c = 0; c < 2; c++) middle[c] += p[k][c] / n;
     if (!(across_m >= 0.1)) return leave(i, CULTURE_LEFT_CROSSED);
@@ -308,9 +324,8 @@ static Status add_round(Import *i)
 
 /* ---- features ---------------------------------------------------------------------------------------- */
 
-static Status take_part(void *user, const VectorPart *part)
+static Status make_part(Import *i, const VectorPart *part)
 {
-    Import        *i = user;
     CultureFacts  *f = &i->facts;
     const uint32_t ringed = part->shape == VECTOR_POLYGON;
     i->part = part, i->made = 0;
@@ -327,6 +342,25 @@ static Status take_part(void *user, const VectorPart *part)
     if (part->corners == 0) return leave(i, CULTURE_LEFT_LARGE);
     if (ringed) memcpy(i->corner_m[part->corners], i->corner_m[0], sizeof *i->corner_m);
     return add_runs(i, part->corners + (int)ringed, rule->makes == MAKES_TREE_ROW ? add_row : add_line);
+}
+
+/* The records made so far, those that are not kept too. */
+static void count_made(int64_t out[4], const Import *i)
+{
+    const Culture *c = i->culture;
+    const int      kept[4] = {c->buildings, c->lines, c->points, c->trees};
+    for (int k = 0; k < 4; k++) out[k] = i->passed[k] + kept[k];
+}
+
+static Status take_part(void *user, const VectorPart *part)
+{
+    Import      *i = user;
+    Culture     *c = i->culture;
+    const Status status = make_part(i, part);
+    if (!i->from->passes) return status;
+    count_made(i->passed, i);
+    c->corners = c->buildings = c->lines = c->points = c->trees = 0;
+    return status;
 }
 
 /* Degrees about the square, with room for its curvature; NaN near a pole or the date line: everything is asked for. */
@@ -353,7 +387,7 @@ static Status read_vectors(Import *i)
     if (status == STATUS_OK) status = vectors_each(&end, &vectors, box_deg, take_part, i, "terrain.buildings");
     vectors_close(&vectors);
     culture_rules_close(&i->rules);
-    free(i->corner_m), free(i->ring_m);
+    free(i->corner_m), free(i->ring_m), free(i->known.slot);
     i->report->features = end.features;
     i->report->left[CULTURE_LEFT_OUTSIDE] += (int)fmin((double)end.outside, 1e9);
     i->report->left[CULTURE_LEFT_OTHER] += (int)fmin((double)end.shapeless, 1e9);
@@ -361,25 +395,6 @@ static Status read_vectors(Import *i)
 }
 
 /* ---- all of it ---------------------------------------------------------------------------------------- */
-
-/* Leaves out poles and masts that carry a power line, whose corners are poles. */
-static Status leave_twice(Culture *c, CultureReport *report)
-{
-    static const double same_m = 1;
-    int                 kept = 0;
-    const Status        status = culture_index(c);
-    if (status != STATUS_OK) return status;
-    for (int n = 0; n < c->points; n++) {
-        const CulturePoint *p = &c->point[n];
-        const bool          carries = p->kind == CULTURE_POLE || p->kind == CULTURE_MAST;
-        if (carries && culture_line_near(c, CULTURE_POWER_LINE, p->x_m, p->y_m, same_m) >= 0)
-            report->left[CULTURE_LEFT_TWICE]++;
-        else c->point[kept++] = *p;
-    }
-    if (kept == c->points) return STATUS_OK;
-    c->points = kept;
-    return culture_index(c);
-}
 
 void culture_report_left(char *out, size_t out_size, const CultureReport *r)
 {
@@ -389,7 +404,7 @@ void culture_report_left(char *out, size_t out_size, const CultureReport *r)
         [CULTURE_LEFT_CROSSED] = "with outlines that cross themselves, are smaller than 1 m2 or not on the Earth",
         [CULTURE_LEFT_OTHER] = "of kinds that are not shown",
         [CULTURE_LEFT_HIDDEN] = "in tunnels or underground",
-        [CULTURE_LEFT_TWICE] = "that power lines have themselves"};
+        [CULTURE_LEFT_TWICE] = "that are there already"};
     size_t used = 0;
     *out = 0;
     for (int k = 0; k < CULTURE_LEFTS; k++)
@@ -398,17 +413,20 @@ void culture_report_left(char *out, size_t out_size, const CultureReport *r)
 }
 
 /* One line, a warning where the files have what cannot be true. */
-static void say(const CultureFiles *from, const Culture *c, const CultureReport *r)
+static void say(const Import *i, const CultureReport *r)
 {
-    char       left[512];
+    const CultureFiles *from = i->from;
+    char                left[512];
+    int64_t             made[4];
     const bool absurd = r->mended + r->unread + r->left[CULTURE_LEFT_LARGE] + r->left[CULTURE_LEFT_CROSSED] > 0;
     culture_report_left(left, sizeof left, r);
+    count_made(made, i);
     if (!*left && !absurd) return;
     (absurd ? log_warn : log_detail)(
         "terrain.buildings: %s: left out %s; numbers left aside: %d that could not be true, %d that are none; `pitviper "
-        "terrain culture FILE` lists what there is (%d buildings, %d lines, %d points, %d trees)",
+        "terrain culture FILE` lists what there is (%lld buildings, %lld lines, %lld points, %lld trees)",
         from->buildings && *from->buildings ? from->buildings : from->trees, *left ? left : "nothing", r->mended,
-        r->unread, c->buildings, c->lines, c->points, c->trees);
+        r->unread, (long long)made[0], (long long)made[1], (long long)made[2], (long long)made[3]);
 }
 
 Status culture_open(Culture *out, CultureReport *report, const CultureFiles *from)
@@ -419,14 +437,14 @@ Status culture_open(Culture *out, CultureReport *report, const CultureFiles *fro
     Status        status = STATUS_OK;
     if (from->buildings && *from->buildings) status = read_vectors(&import);
     if (status == STATUS_OK && from->trees && *from->trees) status = culture_trees_read(&culture, &r, from);
-    if (status == STATUS_OK) status = leave_twice(&culture, &r);
+    if (status == STATUS_OK) status = culture_leave_poles(&culture, &r);
     if (status != STATUS_OK) {
         culture_free(&culture);
         return status;
     }
     for (int n = 0; n < culture.trees; n++) r.trees_marked += culture.tree[n].mark != PLANT_UNMARKED;
     for (int k = 0; k < CULTURE_LEFTS; k++) culture.left_out += r.left[k];
-    say(from, &culture, &r);
+    say(&import, &r);
     *out = culture;
     if (report) *report = r;
     return STATUS_OK;
@@ -439,11 +457,12 @@ bool culture_files_good(const char *buildings, const char *trees)
     Culture    culture = {0};
     if (*buildings && !culture_middle(&middle, buildings)) return false;
     const bool good =
-        local_frame_at(&frame, &middle) == STATUS_OK &&
-        culture_open(
-            &culture, NULL,
-            &(CultureFiles){.buildings = buildings, .trees = trees, .frame = &frame, .half_m = culture_farthest_m}) ==
-            STATUS_OK;
+        local_frame_at(&frame, &middle) == STATUS_OK && culture_open(&culture, NULL,
+                                                                     &(CultureFiles){.buildings = buildings,
+                                                                                     .trees = trees,
+                                                                                     .frame = &frame,
+                                                                                     .half_m = culture_farthest_m,
+                                                                                     .passes = true}) == STATUS_OK;
     culture_free(&culture);
     return good;
 }

@@ -18,6 +18,7 @@ typedef struct CultureFiles {
     CultureGround    *ground; /* NULL: ENU z of 0 everywhere */
     void             *user;
     double            half_m; /* half the side of the square about the frame's origin whose culture is wanted */
+    bool              passes; /* no record of files with vectors is kept: they are read to see whether they can be */
 } CultureFiles;
 
 /* Why a feature, or a part of one, is no record. */
@@ -27,7 +28,7 @@ typedef enum CultureLeft {
     CULTURE_LEFT_CROSSED, /* an outline that crosses itself, is smaller than 1 m2, or is not on the Earth */
     CULTURE_LEFT_OTHER,   /* land use, areas of water, parts of buildings: no record is of it */
     CULTURE_LEFT_HIDDEN,  /* in a tunnel or underground */
-    CULTURE_LEFT_TWICE,   /* poles and masts that a power line has itself */
+    CULTURE_LEFT_TWICE, /* there already: of two files, or named twice; poles and masts that a power line has itself */
     CULTURE_LEFTS
 } CultureLeft;
 
@@ -53,7 +54,8 @@ Status culture_open(Culture *out, CultureReport *report, const CultureFiles *fro
 double culture_floor_m(const CultureFiles *from, const double (*corner_m)[2], int corners);
 /* "3 outside the terrain, 1 larger than 1 km2 ..."; empty: nothing was left out. */
 void culture_report_left(char *out, size_t out_size, const CultureReport *report);
-/* Whether files and a table can be read, to their ends; what is wrong is logged. Either may be empty. */
+/* Whether files and a table can be read, to their ends, however many records they hold; what is wrong is logged. Either
+ * may be empty. */
 bool culture_files_good(const char *buildings, const char *trees);
 /* The middle of the files' box; false, logged: they cannot be read, or hold nothing. */
 bool culture_middle(Geodetic *out, const char *files);
@@ -66,7 +68,8 @@ const char *culture_fabric_name(int fabric);
 const char *culture_line_name(int kind);
 const char *culture_point_name(int kind);
 
-/* Every record as GeoJSON in longitudes and latitudes, with its fields as properties. */
-Status culture_write_geojson(const char *path, const Culture *culture, const LocalFrame *frame);
+/* Every record as GeoJSON in longitudes and latitudes, with its fields as properties. from: of its frame and ground
+ * alone: read with these, records are where they were. */
+Status culture_write_geojson(const char *path, const Culture *culture, const CultureFiles *from);
 
 #endif

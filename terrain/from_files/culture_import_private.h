@@ -33,7 +33,6 @@ typedef enum RuleMakes {
     MAKES_TREE_ROW,
     MAKES_NOTHING,
     MAKES_HEIGHT, /* numbers and words, as all that follow */
-    MAKES_PART_HEIGHT,
     MAKES_EAVES,
     MAKES_LEVELS,
     MAKES_ROOF_HEIGHT,
@@ -86,8 +85,7 @@ typedef struct CultureFacts {
     int                use, roof, wall, cover, ground, plant;
     int                roof_way; /* 0: along, 1: across */
     int                heated;   /* 0, 1 */
-    double height_m, eaves_m, part_height_m, ridge_rad, chimneys, levels, roof_height_m, roof_levels, width_m, lanes,
-        direction_rad;
+    double    height_m, eaves_m, ridge_rad, chimneys, levels, roof_height_m, roof_levels, width_m, lanes, direction_rad;
     bool      bridge, hidden, ruined;
     PlantMark mark;
     int       unread; /* numbers that are none */
@@ -120,6 +118,25 @@ void culture_rectangle(double side_m[2], double *along_rad, const double (*corne
 
 /* ENU x and y of a place on the ground. */
 void culture_place(double p_m[2], const CultureFiles *from, double lon_rad, double lat_rad);
+
+/* ---- culture_known.c ---- */
+
+typedef enum KnownList { KNOWN_BUILDING, KNOWN_LINE, KNOWN_POINT, KNOWN_TREE } KnownList;
+typedef struct KnownRecord {
+    int32_t list, number; /* number: in its list, from 1; 0: the slot is free */
+} KnownRecord;
+
+/* Records of a culture by where they are. Zeroes: none; slot is to be freed. */
+typedef struct CultureKnown {
+    size_t       room, count; /* room: a power of two */
+    KnownRecord *slot;        /* [room] */
+} CultureKnown;
+
+/* Adds the last record of a list, which only grows. *again: there is one like it, of its kind and with its corners to
+ * the bit; then it is not added. */
+Status culture_known_take(bool *again, CultureKnown *known, const Culture *culture, KnownList list);
+/* Indexes the culture; leaves out poles and masts that carry a power line, whose corners are poles. */
+Status culture_leave_poles(Culture *culture, CultureReport *report);
 
 /* ---- culture_trees.c ---- */
 

@@ -49,7 +49,7 @@ static const TableColumn columns[] = {
     {"value", TABLE_NAME, TABLE_AT(CultureRule, value), .key = false},
     {"makes", TABLE_CHOICE, TABLE_AT(CultureRule, makes),
      .choices =
-         "building, use, line, point, tree, tree_row, nothing, height, part_height, eaves, levels, "
+         "building, use, line, point, tree, tree_row, nothing, height, eaves, levels, "
          "roof_height, roof_levels, width, lanes, direction, roof, roof_way, ridge, chimneys, heated, wall, cover, ground, plant, bridge, hidden, "
          "ruined, marked, id, tags"},
     {"kind", TABLE_NAME, TABLE_AT(CultureRule, kind_name), .absent = TABLE_EMPTY},
@@ -255,9 +255,6 @@ static void apply(CultureFacts *f, const CultureRule *rule, const char *value)
     case MAKES_HEIGHT:
         set_number(f, &f->height_m, culture_metres, value);
         break;
-    case MAKES_PART_HEIGHT:
-        set_number(f, &f->part_height_m, culture_metres, value);
-        break;
     case MAKES_EAVES:
         set_number(f, &f->eaves_m, culture_metres, value);
         break;
@@ -368,7 +365,6 @@ void culture_facts(CultureFacts *out, const CultureRules *rules, int tags, const
                           .ridge_rad = NAN,
                           .chimneys = NAN,
                           .height_m = NAN,
-                          .part_height_m = NAN,
                           .levels = NAN,
                           .roof_height_m = NAN,
                           .roof_levels = NAN,

@@ -61,7 +61,9 @@ Status culture_trees_read(Culture *culture, CultureReport *report, const Culture
     Status    status = table_rows_open(&rows, &formats[2], from->trees);
     if (status != STATUS_OK) return status;
     const bool local = table_rows_has(&rows, "x_m");
-    status = table_rows_use(&rows, &formats[local]);
+    status = local && (table_rows_has(&rows, "lat") || table_rows_has(&rows, "lon"))
+                 ? table_rows_lack(&rows, "places are given twice, by lat and lon and by x_m and y_m: one of both")
+                 : table_rows_use(&rows, &formats[local]);
     for (int n = 0; n < rows.table.rows && status == STATUS_OK; n++) {
         TreeRow row = {.kind = PLANT_ENGLISH_OAK};
         double  p_m[2];

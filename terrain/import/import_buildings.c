@@ -71,7 +71,7 @@ Status import_buildings_write(StoreImport *m, const TerrainStore *store)
         if (settle(&b, corner_m, &ground)) status = culture_add_building(&all, &b, corner_m, b.corners);
         else all.left_out++;
     }
-    if (status == STATUS_OK) status = culture_write_geojson(m->o->buildings, &all, &store->frame);
+    if (status == STATUS_OK) status = culture_write_geojson(m->o->buildings, &all, &ground);
     m->r.records = all.buildings;
     m->r.records_left = m->culture.left_out + all.left_out;
     culture_free(&all);

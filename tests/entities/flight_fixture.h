@@ -55,6 +55,25 @@ static inline void row_of_etc(Missile *out, const char *name)
     CHECK(missile_read(out, path, name) == STATUS_OK);
 }
 
+/* Writes the table of etc/ with one cell changed. */
+static inline void missiles_but(char copy[text_file_size], const char *row, const char *column, const char *value)
+{
+    char  path[1024], *text = NULL;
+    Table t;
+    CHECK(etc_path(path, sizeof path, "missiles.csv") && table_open(&t, path) == STATUS_OK);
+    size_t octets;
+    FILE  *to = open_memstream(&text, &octets);
+    for (int r = -1; r < t.rows; r++)
+        for (int c = 0; c < t.columns; c++) {
+            const bool here = r >= 0 && strcmp(table_text(&t, r, 0), row) == 0 && c == table_column(&t, column);
+            fprintf(to, "\"%s\"%c", here ? value : table_text(&t, r, c), c + 1 < t.columns ? ',' : '\n');
+        }
+    fclose(to);
+    table_close(&t);
+    text_file(copy, text);
+    free(text);
+}
+
 /* From frame's origin at the speed of the row, towards azimuth and elevation; the target by ENU. */
 static inline Engagement engagement_of(const LocalFrame *frame, const Missile *m, double azimuth_deg,
                                        double elevation_deg, const double target_enu[3], const double v_enu[3],

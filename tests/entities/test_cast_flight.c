@@ -190,6 +190,13 @@ static void what_is_wrong_is_said(void **state)
     scenario_destroy(&scenario);
     CHECK(open_scene(&cast, &scenario, "missiles", "/nowhere/missiles.csv") != STATUS_OK);
     scenario_destroy(&scenario);
+    /* a launcher that stands and gives no speed gives no direction */
+    char missiles[text_file_size];
+    missiles_but(missiles, "at_loft", "launch_mps", "0");
+    CHECK(open_scene(&cast, &scenario, "missiles", missiles) == STATUS_BAD_VALUE);
+    CHECK(strstr(check_said, "at_loft leaves its launcher at ") && strstr(check_said, "launch_mps"));
+    scenario_destroy(&scenario);
+    remove(missiles);
     log_set_sink(NULL, NULL);
     SettingType type;
     CHECK(scenario_key_type(&type, "shots.X.sight_late_s") && type == SETTING_DOUBLE);

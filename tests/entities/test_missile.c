@@ -23,21 +23,8 @@ static void a_row_is_read_in_units_of_the_program(void **state)
 /* The table of etc/ with one cell changed is refused, and the message says why. */
 static void refuse(const char *row, const char *column, const char *value, const char *said)
 {
-    char  path[1024], copy[text_file_size], *text = NULL;
-    Table t;
-    CHECK(etc_path(path, sizeof path, "missiles.csv"));
-    CHECK(table_open(&t, path) == STATUS_OK);
-    size_t octets;
-    FILE  *to = open_memstream(&text, &octets);
-    for (int r = -1; r < t.rows; r++)
-        for (int c = 0; c < t.columns; c++) {
-            const bool here = r >= 0 && strcmp(table_text(&t, r, 0), row) == 0 && c == table_column(&t, column);
-            fprintf(to, "\"%s\"%c", here ? value : table_text(&t, r, c), c + 1 < t.columns ? ',' : '\n');
-        }
-    fclose(to);
-    table_close(&t);
-    text_file(copy, text);
-    free(text);
+    char copy[text_file_size];
+    missiles_but(copy, row, column, value);
     Missile m[16];
     int     count;
     check_said[0] = 0;

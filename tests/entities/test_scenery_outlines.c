@@ -84,7 +84,7 @@ static bool is_inside(const double (*p)[2], int n, const double at[3])
 static void check_building(const Scenery *s, int model, const Culture *c, const Building *b)
 {
     const double(*p)[2] = (const double(*)[2])c->corner_m + b->first_corner;
-    double covered = 0, outline = outline_area_m2(p, b->corners), high_m = 0;
+    double covered = 0, outline = culture_area_m2(p, b->corners), high_m = 0;
     for (int t = 0; t < s->model[model].triangle_count; t++) {
         const Facet  f = facet(s, model, t);
         const double area = 0.5 * v3_length(f.n);
@@ -306,10 +306,10 @@ static void triangles_cover_an_outline(void **state)
         for (int k = 0; k < c.building[0].corners - 2; k++) {
             const double corner[3][2] = {
                 {q[t[k][0]][0], q[t[k][0]][1]}, {q[t[k][1]][0], q[t[k][1]][1]}, {q[t[k][2]][0], q[t[k][2]][1]}};
-            CHECK(outline_area_m2(corner, 3) > 0);
-            sum += outline_area_m2(corner, 3);
+            CHECK(culture_area_m2(corner, 3) > 0);
+            sum += culture_area_m2(corner, 3);
         }
-        CHECK_NEAR(sum, outline_area_m2(q, c.building[0].corners), 1e-9 * sum);
+        CHECK_NEAR(sum, culture_area_m2(q, c.building[0].corners), 1e-9 * sum);
         culture_free(&c);
     }
     /* one that crosses itself: still n - 2 triangles, but said */
@@ -344,10 +344,10 @@ static void nodes_are_as_far_from_the_eaves_as_their_time(void **state)
                     ((b[0] - a[0]) * (v[1] - a[1]) - (b[1] - a[1]) * (v[0] - a[0])) / hypot(b[0] - a[0], b[1] - a[1]);
                 CHECK_NEAR(v[2], m, 3e-3); /* nodes nearer than 1 mm are one, at corners of any sharpness */
             }
-            sum += outline_area_m2((const double(*)[2])face, count);
-            CHECK(outline_area_m2((const double(*)[2])face, count) > 0);
+            sum += culture_area_m2((const double(*)[2])face, count);
+            CHECK(culture_area_m2((const double(*)[2])face, count) > 0);
         }
-        CHECK_NEAR(sum, outline_area_m2(q, n), 1e-6 * sum);
+        CHECK_NEAR(sum, culture_area_m2(q, n), 1e-6 * sum);
         roof_plan_free(&plan), culture_free(&c);
     }
 }

@@ -111,6 +111,22 @@ static void wires_sag(void **state)
     scenery_free(&s);
 }
 
+/* Where poles between are not recorded, wires do not hang to the ground: 10 m high over 600 m. */
+static void long_spans_stay_off_the_ground(void **state)
+{
+    (void)state;
+    static const double p[][2] = {{-680, 5}, {-80, 5}};
+    Scenery             s = scenery_of_line(CULTURE_POWER_LINE, 0, 10, p, 2);
+    double              least_m = INFINITY;
+    for (int m = 0; m < s.models; m++)
+        for (int t = 0; t < s.model[m].triangle_count; t++) {
+            const Facet f = facet(&s, m, t);
+            for (int k = 0; k < 3 && is_part(&f, "wire"); k++) least_m = fmin(least_m, f.p[k][2]);
+        }
+    CHECK_NEAR(least_m, 50 + 0.97 * 10 + 0.2 - 3.5, 0.01);
+    scenery_free(&s);
+}
+
 /* A bridge over the valley is straight between its ends, as wide as said, and stands on piers that reach the ground. */
 static void a_bridge_crosses_the_valley(void **state)
 {
@@ -222,10 +238,10 @@ static void a_crowded_cell_is_several_models(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_of_line_is_closed),     cmocka_unit_test(a_wall_has_its_volume),
-        cmocka_unit_test(fences_follow_the_ground),         cmocka_unit_test(wires_sag),
-        cmocka_unit_test(a_bridge_crosses_the_valley),      cmocka_unit_test(points_have_their_sizes),
-        cmocka_unit_test(a_crowded_cell_is_several_models),
+        cmocka_unit_test(every_kind_of_line_is_closed),   cmocka_unit_test(a_wall_has_its_volume),
+        cmocka_unit_test(fences_follow_the_ground),       cmocka_unit_test(wires_sag),
+        cmocka_unit_test(long_spans_stay_off_the_ground), cmocka_unit_test(a_bridge_crosses_the_valley),
+        cmocka_unit_test(points_have_their_sizes),        cmocka_unit_test(a_crowded_cell_is_several_models),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

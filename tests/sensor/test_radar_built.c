@@ -35,7 +35,13 @@ static Status build_house(Model *out)
     mesh_node(b, "ground", -1, 0, 0, 0);
     mesh_part(b, 0, "wall", "concrete", HEAT_DWELLING);
     mesh_box(b, place_at(0, 0, 0), -0.5 * wall_wide_m, -0.5 * deep_m, -wall_high_m, 0.5 * wall_wide_m, 0.5 * deep_m, 1);
-    return mesh_builder_finish(out, b);
+    mesh_part(b, 0, "rubble", "concrete", HEAT_PASSIVE);
+    mesh_box(b, place_at(0, 0, 0), -0.5 * wall_wide_m, -0.5 * deep_m, -1, 0.5 * wall_wide_m, 0.5 * deep_m, 1);
+    const Status status = mesh_builder_finish(out, b);
+    if (status != STATUS_OK) return status;
+    out->part[0].damage_hidden = 1 << 3; /* destroyed it is rubble, else walls */
+    out->part[1].damage_hidden = 7;
+    return STATUS_OK;
 }
 
 static void along_axis(double p[3], double away_m)
@@ -263,6 +269,31 @@ static void a_house_hides_what_is_behind_it(void **state)
     seeker_radar_destroy(silent);
 }
 
+/* A house that falls 5 s into the exercise returns as its walls, then as a metre of rubble; never as both. */
+static void a_house_that_falls_is_rubble(void **state)
+{
+    (void)state;
+    const Weather weather = weather_default();
+    RadarScene    scene = scene_of(flying, 1, &weather);
+    SeekerRadar  *radar = radar_of(true, false, false);
+    SceneryHarm   harm = {HOUSE, 5, 3};
+    int           pieces[2];
+    arena_reset(stage.arena);
+    const int whole = measure(radar, &scene, stage.pool)->scenery.pieces;
+    built.scenery.harm = &harm, built.scenery.harms = 1;
+    CHECK(scenery_tracer_create(&stage.world.scenery, &built.scenery, "avx2", stage.pool) == STATUS_OK);
+    for (int k = 0; k < 2; k++) {
+        scene.t_s = 4 + 2 * k;
+        pieces[k] = measure(radar, &scene, stage.pool)->scenery.pieces;
+    }
+    scenery_tracer_destroy(stage.world.scenery);
+    stage.world.scenery = built.tracer;
+    built.scenery.harm = NULL, built.scenery.harms = 0;
+    print_message("%d pieces of a house, %d before it falls, %d after\n", whole, pieces[0], pieces[1]);
+    CHECK(whole > 100 && pieces[0] == whole && pieces[1] > 0 && pieces[1] < whole);
+    seeker_radar_destroy(radar);
+}
+
 /* ---- what drives and what stands ----------------------------------------------------------------- */
 
 /* The driving car: its range rate, which is no ground's. Detections of both name them; none of the tank is of scenery.
@@ -418,6 +449,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_wall_flashes_at_its_foot),
         cmocka_unit_test(a_house_hides_what_is_behind_it),
+        cmocka_unit_test(a_house_that_falls_is_rubble),
         cmocka_unit_test(cars_are_told_apart),
         cmocka_unit_test(phases_stay_with_the_place),
         cmocka_unit_test(a_scan_has_the_wall_where_it_is),

@@ -272,10 +272,31 @@ static void the_table_of_clutter(void **state)
     arena_destroy(arena);
 }
 
+/* Paths of vehicles are kept as they are; more of them than a thousand vehicles drive in a day are none. */
+static void paths_have_a_limit(void **state)
+{
+    (void)state;
+    enum { many = 600 };
+    static DrivenPath path[many];
+    Arena            *arena = arena_create();
+    SavedFrame        file = frame_of(NULL, CULTURE_FROM_NOTHING, 1), got;
+    for (int n = 0; n < many; n++) path[n] = (DrivenPath){{-9e5, n}, {9e5, n}, 2};
+    file.scenery.driven = path, file.scenery.drivens = 500; /* 0.9e9 m */
+    ByteSink few = written(file);
+    assert_null(read_back(&got, &few, arena));
+    CHECK(got.scenery.drivens == 500 && memcmp(&got.scenery.driven[499], &path[499], sizeof *path) == 0);
+    file.scenery.drivens = many;
+    ByteSink more = written(file);
+    assert_string_equal(read_back(&got, &more, arena), "paths of vehicles");
+    sink_free(&few), sink_free(&more);
+    arena_destroy(arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_table_of_clutter), cmocka_unit_test(records_and_what_follows_from_them),
-        cmocka_unit_test(what_is_invented_takes_no_records), cmocka_unit_test(what_no_scenery_has_is_refused)};
+        cmocka_unit_test(what_is_invented_takes_no_records), cmocka_unit_test(what_no_scenery_has_is_refused),
+        cmocka_unit_test(paths_have_a_limit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

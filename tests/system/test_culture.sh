@@ -66,6 +66,27 @@ check "five storeys of three metres" said '15\.0 \.\. 15\.0 m high; height state
 check "the track and the tree" said 'lines: 1: 1 track'
 check "11 m of it" grep -q '"height_m": 11.00' "$tmp/osm.geojson"
 
+# more than is read is not left out unsaid
+python3 - "$tmp" <<'PY'
+import json, sqlite3, sys
+square = [[13, 47], [13.0002, 47], [13.0002, 47.0001], [13, 47.0001], [13, 47]]
+tags = {'a%d' % k: 'x' for k in range(96)}
+json.dump({'type': 'FeatureCollection', 'features': [{'type': 'Feature', 'properties': dict(tags, building='house'),
+           'geometry': {'type': 'Polygon', 'coordinates': [square]}}]}, open(sys.argv[1] + '/tags.geojson', 'w'))
+many = sqlite3.connect(sys.argv[1] + '/layers.gpkg')
+sqlite3.connect(sys.argv[1] + '/osm.gpkg').backup(many)
+for k in range(1025):
+    many.execute('CREATE TABLE l%d (fid INTEGER PRIMARY KEY, geom POINT)' % k)
+    many.execute("INSERT INTO gpkg_contents (table_name, data_type, identifier, srs_id) "
+                 "VALUES ('l%d', 'features', 'l%d', 4326)" % (k, k))
+    many.execute("INSERT INTO gpkg_geometry_columns VALUES ('l%d', 'geom', 'POINT', 4326, 0, 0)" % k)
+many.commit()
+PY
+run terrain culture "$tmp/layers.gpkg"
+check "a thousand layers and more" complained 'has 10[0-9]+ layers, more than 1024'
+run terrain culture "$tmp/tags.geojson"
+check "an attribute that is not read is told" complained 'more attributes than are read'
+
 # a terrain store is what they stand on
 python3 - "$tmp/dem.asc" <<'PY'
 import sys

@@ -42,6 +42,7 @@ refused() { # refused WHAT CODE PATTERN ARGUMENTS...
 s=$tmp/short.yaml
 refused "two sources" 2 'without --recogniser' "$s" --recogniser true --sights x.csv
 refused "options without frames" 2 'with --frames DIR or --recogniser' "$s" -- --size 96x64
+refused "a wait for no answers" 2 'with --recogniser COMMAND' "$s" --frames "$tmp/x" --limit 3
 refused "no time" 2 'limit.*seconds above 0' "$s" --frames "$tmp/x" --limit -1
 refused "a missile without a seeker" 1 'has no seeker' "$s" --frames "$tmp/x" --set shots.Missile.flies=wire_at
 refused "two shots" 1 '2 shots fly' "$s" --frames "$tmp/x" --set shots.Missile.rounds=2

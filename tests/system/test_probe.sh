@@ -139,14 +139,15 @@ probe flight < <(echo $head,target_e_m,target_n_m,target_u_m,until_s,earth,air,s
     echo nothing,0,0,1000,90,0,100,,,,10,0,0,
     echo bomb_laser,0,0,1000,90,0,100,5,,,10,0,0,
     echo bomb_laser,0,0,1000,90,0,100,,,,10,0,0,0.0001
-    echo bomb_laser,91,0,1000,90,0,100,,,,10,0,0,)
+    echo bomb_laser,91,0,1000,90,0,100,,,,10,0,0,
+    echo bomb_laser,0,0,1000,90,0,0,,,,10,0,0,)
 near "flight: a straight line" "$(cell 1 y_m)" 1000 1e-6
 near "flight: along the tangent" "$(cell 1 x_m)" 6379137 1e-6
 check "flight: until asked" test "$(cell 1 end)" = until -a "$(cell 1 end_s)" = 10
 near "flight: passes by" "$(cell 2 miss_m)" 7 1e-9
 near "flight: at 9 s" "$(cell 2 miss_s)" 9 1e-9
 near "flight: above it" "$(cell 2 miss_u_m)" 7 1e-9
-for row in 3 4 5 6; do check "flight: row $row says why not" test -n "$(cell $row error)" -a -z "$(cell $row end_s)"; done
+for row in 3 4 5 6 7; do check "flight: row $row says why not" test -n "$(cell $row error)" -a -z "$(cell $row end_s)"; done
 probe flight /nowhere.csv < <(echo $head)
 check "flight: a table that is not there" test $code -ge 1
 

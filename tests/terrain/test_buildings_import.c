@@ -241,7 +241,7 @@ static void records_come_back(void **state)
                             .chimneys = (uint8_t)(n % 4)};
         assert_int_equal(culture_add_building(&culture, &b, corner_m, 4), STATUS_OK);
     }
-    assert_int_equal(culture_write_geojson(path, &culture, &frame), STATUS_OK);
+    assert_int_equal(culture_write_geojson(path, &culture, &(CultureFiles){.frame = &frame}), STATUS_OK);
     assert_int_equal(culture_open(&back, &report, &from), STATUS_OK);
     CHECK(culture.buildings == 30 && back.buildings == 30 && report.mended == 0 && report.unread == 0);
     for (int n = 0; n < 30; n++) {

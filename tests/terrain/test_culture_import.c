@@ -296,7 +296,8 @@ static void a_table_of_trees(void **state)
     CHECK(c.trees == 2 && c.tree[1].x_m == -30.5 && c.tree[1].mark == MARK_WHITE && r.left[CULTURE_LEFT_OUTSIDE] == 1);
     culture_free(&c);
     static const char *const bad[] = {"x_m,kind\n1,pine\n",          "x_m,y_m,kind\n1,2,palm\n",      "lat,lon\n91,0\n",
-                                      "x_m,y_m,height_m\n1,2,500\n", "x_m,y_m,marked\n1,2,perhaps\n", "height_m\n3\n"};
+                                      "x_m,y_m,height_m\n1,2,500\n", "x_m,y_m,marked\n1,2,perhaps\n", "height_m\n3\n",
+                                      "lat,lon,x_m,y_m\n47,13,1,2\n"};
     log_set_sink(check_listen, NULL);
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         save("bad.csv", bad[k]);
@@ -306,13 +307,104 @@ static void a_table_of_trees(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* Two files of neighbouring areas have what lies on the border in common; one that is named twice, all. */
+static void what_two_files_have_is_there_once(void **state)
+{
+    (void)state;
+    static const double one[5][2] = {{0, 0}, {12, 0}, {12, 9}, {0, 9}, {0, 0}};
+    static const double other[5][2] = {{50, 0}, {62, 0}, {62, 9}, {50, 9}, {50, 0}};
+    static const double wall[3][2] = {{0, 40}, {30, 40}, {30, 60}}, tank[1][2] = {{80, 80}}, birch[1][2] = {{90, 80}};
+    Culture             c, all;
+    CultureReport       r;
+    for (int k = 0; k < 2; k++) {
+        begin_file();
+        add_feature("Polygon", "[[", "]]", "\"building\":\"house\",\"height\":7", one, 5);
+        if (k) add_feature("Polygon", "[[", "]]", "\"building\":\"house\"", other, 5);
+        add_feature("LineString", "[", "]", "\"barrier\":\"wall\"", wall, 3);
+        add_feature("Point", "", "", "\"man_made\":\"silo\"", tank, 1);
+        add_feature("Point", "", "", "\"natural\":\"tree\"", birch, 1);
+        end_file(k ? "east.geojson" : "west.geojson");
+    }
+    assert_int_equal(open_names(&c, &r, "west.geojson,east.geojson,west.geojson", NULL), STATUS_OK);
+    CHECK(c.buildings == 2 && c.lines == 1 && c.points == 1 && c.trees == 1 && r.left[CULTURE_LEFT_TWICE] == 8);
+    CHECK(r.height_from[HEIGHT_FROM_FILE] == 1 && r.height_from[HEIGHT_FROM_USE] == 1 && c.corners == 4 + 3 + 4);
+    assert_int_equal(open_names(&all, &r, "east.geojson", NULL), STATUS_OK);
+    CHECK(all.buildings == 2 && all.lines == 1 && r.left[CULTURE_LEFT_TWICE] == 0);
+    culture_free(&c), culture_free(&all);
+}
+
+/* The first place of the first feature of a type in GeoJSON, off where it is on the hill, in degrees. */
+static double first_off_deg(const char *json, const char *type, const double p_m[2])
+{
+    double      deg[2], want[2];
+    const char *at = strstr(json, type);
+    CHECK(at && (at = strstr(at, "coordinates\": ")));
+    at += strcspn(at, "[");
+    CHECK(sscanf(at + strspn(at, "["), "%lf, %lf", &deg[0], &deg[1]) == 2);
+    degrees_of(want, p_m[0], p_m[1]);
+    return fmax(fabs(deg[0] - want[0]), fabs(deg[1] - want[1]));
+}
+
+/* Records are written where they are on ground that is high above the frame's plane, 12 km off. */
+static void records_are_written_where_they_are(void **state)
+{
+    (void)state;
+    static const double one[5][2] = {{8000, 9000}, {8012, 9000}, {8012, 9009}, {8000, 9009}, {8000, 9000}};
+    static const double wall[3][2] = {{-9000, 8000}, {-9030, 8000}, {-9030, 8060}}, birch[1][2] = {{8000, -9000}};
+    static char         json[1 << 14];
+    char                path[128];
+    Culture             c;
+    CultureReport       r;
+    begin_file();
+    add_feature("Polygon", "[[", "]]", "\"building\":\"house\"", one, 5);
+    add_feature("LineString", "[", "]", "\"barrier\":\"wall\"", wall, 3);
+    add_feature("Point", "", "", "\"natural\":\"tree\"", birch, 1);
+    end_file("in.geojson");
+    assert_int_equal(open_names(&c, &r, "in.geojson", NULL), STATUS_OK);
+    path_of(path, "out.geojson");
+    assert_int_equal(culture_write_geojson(path, &c, &(CultureFiles){.frame = &frame, .ground = hill}), STATUS_OK);
+    FILE *file = fopen(path, "r");
+    CHECK(file && fread(json, 1, sizeof json - 1, file) > 0);
+    fclose(file);
+    const double polygon = first_off_deg(json, "Polygon", c.corner_m[c.building[0].first_corner]),
+                 line = first_off_deg(json, "LineString", wall[0]), point = first_off_deg(json, "Point", birch[0]);
+    print_message("%.1e, %.1e and %.1e degrees off\n", polygon, line, point);
+    CHECK(polygon < 2e-9 && line < 2e-9 && point < 2e-9); /* of nine decimals; a metre is 1e-5 */
+    culture_free(&c);
+}
+
+/* Fifteen hedges of 200 km are 2.5 million plants: more than one culture holds, but no file has a limit of its own. */
+static void a_file_of_more_records_than_a_square_holds_is_good(void **state)
+{
+    (void)state;
+    char path[128];
+    begin_file();
+    for (int n = 0; n < 15; n++) {
+        const double p[2][2] = {{-1e5, 10 * n}, {1e5, 10 * n}};
+        add_feature("LineString", "[", "]", "\"barrier\":\"hedge\"", p, 2);
+    }
+    end_file("hedges.geojson");
+    path_of(path, "hedges.geojson");
+    CHECK(culture_files_good(path, ""));
+    save("hedges.geojson", "{\"type\":");
+    log_set_sink(check_listen, NULL);
+    CHECK(!culture_files_good(path, ""));
+    log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(places_are_on_the_ground), cmocka_unit_test(three_formats_and_systems_are_one),
-        cmocka_unit_test(mixed_features),           cmocka_unit_test(what_cannot_be_is_counted),
-        cmocka_unit_test(rows_are_clipped),         cmocka_unit_test(courtyards_are_open),
+        cmocka_unit_test(places_are_on_the_ground),
+        cmocka_unit_test(three_formats_and_systems_are_one),
+        cmocka_unit_test(mixed_features),
+        cmocka_unit_test(what_cannot_be_is_counted),
+        cmocka_unit_test(rows_are_clipped),
+        cmocka_unit_test(courtyards_are_open),
         cmocka_unit_test(a_table_of_trees),
+        cmocka_unit_test(a_file_of_more_records_than_a_square_holds_is_good),
+        cmocka_unit_test(what_two_files_have_is_there_once),
+        cmocka_unit_test(records_are_written_where_they_are),
     };
     return cmocka_run_group_tests(tests, open_lab, close_lab);
 }

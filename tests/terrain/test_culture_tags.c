@@ -197,9 +197,9 @@ static void what_a_feature_says(void **state)
 {
     (void)state;
     CultureFacts f =
-        facts_of("building=church|height=39 ft|roof:height=2|roof:levels=1|building:levels=3|min_height=1");
+        facts_of("building=church|height=39 ft|roof:height=2|roof:levels=1|building:levels=3|min_height=low");
     CHECK_NEAR(f.height_m, 11.8872, 1e-9);
-    CHECK(f.roof_height_m == 2 && f.roof_levels == 1 && f.levels == 3 && f.part_height_m == 1 && f.unread == 0);
+    CHECK(f.roof_height_m == 2 && f.roof_levels == 1 && f.levels == 3 && f.unread == 0);
     f = facts_of("amenity=place_of_worship|building=yes|roof:shape=Mansard|roof:orientation=across|roof:material=slate|"
                  "building:material=sandstone|roof:direction=SW");
     CHECK(f.use == BUILDING_CHURCH && f.roof == ROOF_HIPPED && f.roof_way == 1 && f.cover == FABRIC_SLATE &&

@@ -140,19 +140,19 @@ static void print_culture(const Culture *c, const CultureReport *r, const Geodet
 
 static Status show(const Wanted *w, const Geodetic *at, const LocalFrame *frame, const TerrainStore *store)
 {
-    Culture       culture = {0};
-    CultureReport report;
-    Elevation     elevation = store ? store->elevation : (Elevation){0};
-    Status        status = culture_open(&culture, &report,
-                                        &(CultureFiles){.buildings = w->files,
-                                                        .trees = w->trees,
-                                                        .frame = frame,
-                                                        .ground = store ? ground_of : NULL,
-                                                        .user = &elevation,
-                                                        .half_m = w->half_m});
+    Culture            culture = {0};
+    CultureReport      report;
+    Elevation          elevation = store ? store->elevation : (Elevation){0};
+    const CultureFiles from = {.buildings = w->files,
+                               .trees = w->trees,
+                               .frame = frame,
+                               .ground = store ? ground_of : NULL,
+                               .user = &elevation,
+                               .half_m = w->half_m};
+    Status             status = culture_open(&culture, &report, &from);
     if (status != STATUS_OK) return status;
     print_culture(&culture, &report, at, w);
-    if (w->out) status = culture_write_geojson(w->out, &culture, frame);
+    if (w->out) status = culture_write_geojson(w->out, &culture, &from);
     culture_free(&culture);
     return status;
 }

@@ -147,8 +147,6 @@ void   choice_woods_free(WoodsChoice *woods);
 /* With terrain.place: where vehicles of the log stand and drive on the ground, within the square. */
 Status choice_driven(DrivenPath **out, int *count, const ChoiceBasis *basis, const WoodsSquare *square,
                      const Landscape *landscape);
-/* Of the same square: terrain.buildings, terrain.trees, terrain.clutter. basis->evidence is not used.
- * frame_scenery_free after success and failure. */
 /* Which buildings of it the exercise damages, and when: plan->harm. culture: indexed. At most 4096 bursts. */
 Status choice_harm(SceneryPlan *plan, const Culture *culture, const ChoiceBasis *basis, const LocalFrame *frame);
 /* Adds all that it follows from to a hash. False: out of memory. */
@@ -158,8 +156,10 @@ double choice_harm_radius(double charge_kg, int damage);
 int    choice_burst_damage(const Culture *culture, int building, const double p_enu[3], double charge_kg);
 /* The building that an entity of this type and model (of the catalog; -1: none) stands for at a place: one of kind 5
  * whose model is a building, within the outline. -1: none. */
-int    choice_building_of(const Culture *culture, const Catalog *catalog, DisEntityType type, int model,
-                          const double p_enu[3]);
+int choice_building_of(const Culture *culture, const Catalog *catalog, DisEntityType type, int model,
+                       const double p_enu[3]);
+/* Of the same square: terrain.buildings, terrain.trees, terrain.clutter, and what the exercise damages.
+ * frame_scenery_free after success and failure. */
 Status choice_scenery(FrameScenery *out, Choices *choices, const ChoiceBasis *basis, const WoodsSquare *square,
                       const Landscape *landscape);
 

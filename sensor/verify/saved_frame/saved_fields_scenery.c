@@ -94,6 +94,18 @@ static void driven_fields(Fields *f, void *record)
     field_real(f, "width of a path", &p->half_m, 0, 1000);
 }
 
+/* All paths are no longer than what a thousand vehicles drive in a day: what is made along them has that limit. */
+static void driven_list(Fields *f, SavedScenery *s)
+{
+    static const double most_m = 1e9;
+    double              sum_m = 0;
+    field_list(f, &s->drivens, (void **)&s->driven, sizeof *s->driven, landscape_parts_rows, driven_fields);
+    if (!f->from || !fields_good(f)) return;
+    for (int n = 0; n < s->drivens; n++)
+        sum_m += hypot(s->driven[n].b_m[0] - s->driven[n].a_m[0], s->driven[n].b_m[1] - s->driven[n].a_m[1]);
+    if (!(sum_m <= most_m)) f->fault = "paths of vehicles";
+}
+
 /* Only of a table that is not countryside, or where paths follow. */
 static void table_field(Fields *f, char *named, size_t size, bool more)
 {
@@ -122,7 +134,7 @@ void saved_fields_scenery(Fields *f, SavedFrame *file)
     SavedScenery *s = &file->scenery;
     table_field(f, plan->clutter_table, sizeof plan->clutter_table, s->drivens > 0);
     if (f->from ? f->from->at < f->from->end : s->drivens > 0) /* last */
-        field_list(f, &s->drivens, (void **)&s->driven, sizeof *s->driven, landscape_parts_rows, driven_fields);
+        driven_list(f, s);
 }
 
 /* A file without this chunk is of a frame whose scenery had neither. */

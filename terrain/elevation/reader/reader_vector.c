@@ -127,7 +127,11 @@ static Status open_one(WireVectors *out, char *path, const char *key)
     VectorFile *kept = &vector[vectors - 1];
     if (!named_crs(kept, &choice, key)) return STATUS_BAD_VALUE;
     kept->layers = GDALDatasetGetLayerCount(f.file);
-    if (kept->layers > most_layers) kept->layers = most_layers;
+    if (kept->layers > most_layers) {
+        log_error("%s: %s has %d layers, more than %d; `ogr2ogr OUT.gpkg %s LAYER ...` takes those that are needed",
+                  key, path, kept->layers, (int)most_layers, path);
+        return STATUS_BAD_VALUE;
+    }
     out->files++;
     for (int k = 0; k < kept->layers; k++) {
         OGRLayerH layer = GDALDatasetGetLayer(f.file, k);
@@ -249,6 +253,17 @@ static size_t put_text(char *to, const char *text, size_t most)
     return octets + 1;
 }
 
+static void say_cut(void)
+{
+    static bool said;
+    if (!said)
+        log_warn(
+            "%s: a feature has more attributes than are read, %d: the others are ignored; `ogr2ogr -select NAME,...` "
+            "keeps those that are needed",
+            vector[at.of_file].path, (int)wire_most_tags);
+    said = true;
+}
+
 /* Names and values of the attributes that are set, as many as fit. */
 static size_t put_tags(char *to, int32_t *tags, OGRFeatureH feature)
 {
@@ -256,14 +271,17 @@ static size_t put_tags(char *to, int32_t *tags, OGRFeatureH feature)
     const int       fields = OGR_FD_GetFieldCount(of_layer);
     size_t          used = 0;
     *tags = 0;
-    for (int k = 0; k < fields && *tags < wire_most_tags; k++) {
+    for (int k = 0; k < fields; k++) {
         if (!OGR_F_IsFieldSetAndNotNull(feature, k)) continue;
         const char *name = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(of_layer, k));
         const char *value = OGR_F_GetFieldAsString(feature, k);
         if (!name || !value || !*name || !*value) continue;
         const bool   several = strcasecmp(name, "other_tags") == 0 || strcasecmp(name, "tags") == 0;
         const size_t most = several ? most_hstore : most_value;
-        if (used + most_name + most + 2 > wire_most_texts) break;
+        if (*tags == wire_most_tags || used + most_name + most + 2 > wire_most_texts) {
+            say_cut();
+            break;
+        }
         used += put_text(to + used, name, most_name);
         used += put_text(to + used, value, most);
         ++*tags;
