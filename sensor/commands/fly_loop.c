@@ -4,6 +4,7 @@
 #include "pitviper_output.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/node/clock/flight_clock.h"
+#include "sensor/node/flight/node_flight.h"
 #include "sensor/node/flight/recogniser.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/run/stop.h"
@@ -112,6 +113,11 @@ static Status node_options(Options *out, Flying *f, const Cast *cast)
             "missile is the host, and its flight the clock");
         return STATUS_BAD_VALUE;
     }
+    if (!flight_mount_good(&out->config)) return STATUS_BAD_VALUE;
+    if (*out->config.flight.missile) {
+        log_error("fly: flight.missile: is of a live node; the shot's `flies`, or --missile, says what flies");
+        return STATUS_BAD_VALUE;
+    }
     if (o->recogniser && !o->sights && !out->config.publish.detections_port) {
         log_error("fly: --recogniser: publish.detections_port is where its answers come: not 0");
         return STATUS_BAD_VALUE;
@@ -129,9 +135,7 @@ static Status make_frame(void *user, const FrameTime *frame)
 {
     Flying *f = user;
     bool    shown;
-    Status  status = session_frame(&shown, f->session, frame);
-    if (status == STATUS_OK && shown) loop_sights_frame(f->loop, frame->number);
-    return status;
+    return session_frame(&shown, f->session, frame);
 }
 
 static Status fly_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)

@@ -260,7 +260,7 @@ static bool enough(void *user)
 {
     const Live *l = user;
     const int   most = l->run.options.frames;
-    return over(l) || (most && session_result(l->session)->frames >= most);
+    return over(l) || session_flight_over(l->session) || (most && session_result(l->session)->frames >= most);
 }
 
 static Status make_frame(void *user, const FrameTime *frame)
@@ -455,6 +455,7 @@ int run_command(int argc, char **argv)
     l->run.publish = count_frame;
     if (l->run.options.config.quality.deadline && !*l->run.options.config.exercise.cigi) l->run.choose = choose_quality;
     if (publishes(l)) l->run.send = send_pdu;
+    l->run.report = send_pdu;
     if (*l->run.options.config.record.path) l->run.note = note;
     l->run.clock = &l->clock.clock;
     memcpy(name, l->run.options.config.record.path, sizeof name);

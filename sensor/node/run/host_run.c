@@ -3,6 +3,7 @@
 
 #include "dis/capture/log.h"
 #include "sensor/node/choices/choices.h"
+#include "sensor/node/flight/node_flight.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/publish/images/image_file.h"
 #include "sensor/publish/memory/consume_memory.h"
@@ -66,6 +67,15 @@ Status run_prepare(Run *run)
             "%s: publish.planes: emissivity is of thermal bands, and none is rendered; add mwir or lwir to sensor.bands",
             options_command(&run->options));
         return STATUS_BAD_VALUE;
+    }
+    if (node_flight_asked(&run->options.config) && !run->flight) {
+        const Options *o = &run->options;
+        const Status   fit = node_flight_check(&o->config, o->command == COMMAND_RUN);
+        if (fit != STATUS_OK) return fit;
+        if (o->host_count > 1 || o->sweep || (o->command == COMMAND_REPLAY && !o->config.exercise.causal)) {
+            log_error("flight: flight.missile: in `run`, or a replay of what that recorded, with --causal: one host, no sweep");
+            return STATUS_BAD_VALUE;
+        }
     }
     Status status = config_own_tables(&run->options.config);
     if (status != STATUS_OK) return status;
@@ -344,6 +354,27 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
     return STATUS_OK;
 }
 
+static double arrival_s(const void *player, double t_s) { return player_arrival_s(player, t_s); }
+
+/* The missile that the node flies itself; none where it is not asked for. */
+static Status open_flight(NodeFlight **out, const Run *run, const Player *player, const char *folder, const HostPlan *plan)
+{
+    const Options     *o = &run->options;
+    const NodeFlightOf of = {.config = &o->config,
+                             .folder = folder,
+                             .target = plan->aim,
+                             .version = run->first.version,
+                             .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
+                             .live = o->command == COMMAND_RUN,
+                             .notes = run->view.notes,
+                             .user = run->user,
+                             .note = run->note,
+                             .send = run->report,
+                             .clock = player,
+                             .arrival_s = arrival_s};
+    return node_flight_asked(&o->config) ? node_flight_open(out, &of) : STATUS_OK;
+}
+
 Status run_host(Run *run, const DisEntityId *host)
 {
     const Options *o = &run->options;
@@ -352,6 +383,7 @@ Status run_host(Run *run, const DisEntityId *host)
     SessionResult  result = {0};
     Player        *player = NULL;
     Session       *session = NULL;
+    NodeFlight    *flight = NULL;
     char           out[run_folder_size], host_text[dis_id_text_size];
 
     if (host) {
@@ -370,6 +402,9 @@ Status run_host(Run *run, const DisEntityId *host)
                                .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
                                .send = run->send,
                                .user = run->user};
+    status = open_flight(&flight, run, player, out, &chosen.plan);
+    if (status != STATUS_OK) goto done;
+    if (flight) run->flight = node_flight_loop(flight);
     const SessionShared shared = {.config = &o->config,
                                   .survey = &made->survey,
                                   .catalog = made->catalog,
@@ -406,6 +441,9 @@ Status run_host(Run *run, const DisEntityId *host)
     snprintf(host_text, sizeof host_text, "%s", session_host(session));
     const Status closed = session_close(session, &result);
     if (status == STATUS_OK) status = closed;
+    const Status landed = node_flight_close(flight);
+    if (status == STATUS_OK) status = landed;
+    flight = NULL;
     if (run->live) {
         run->live->files_failed = (uint64_t)result.files_failed;
         run->live->files_left_out = (uint64_t)result.files_left_out;
@@ -425,6 +463,7 @@ Status run_host(Run *run, const DisEntityId *host)
     }
 
 done:
+    node_flight_close(flight);
     session_result_free(&result);
     player_destroy(player);
     return status;
