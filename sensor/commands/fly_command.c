@@ -281,21 +281,24 @@ static void take(Misses *misses, const Cast *cast, const CastFlight *flight, con
     if (o->plot) fly_paths_take(&misses->paths, cast, flight);
 }
 
-/* One missile, by what is seen in its frames. */
+/* By what is seen in their frames. */
 static Status fly_in_loop(Misses *misses, Scenario *scenario, const HideJudge *hide, const Options *o)
 {
     Cast          *cast = NULL;
-    FlyLoopCounts  counts = {0};
+    FlyLoopCounts *counts = NULL;
     const Scenario as_given = *scenario;
     Status         status = cast_create_held(&cast, scenario, hide);
-    if (status == STATUS_OK) status = fly_loop_seed(&counts, cast, scenario, &o->loop, write_exercise);
-    if (status == STATUS_OK && !stop_asked()) {
-        print_row(cast, &cast->flight[0], &counts);
-        fflush(stdout);
-        take(misses, cast, &cast->flight[0], o);
-        if (o->out) status = record(cast, o);
+    if (status == STATUS_OK && !(counts = calloc((size_t)cast->flight_count, sizeof *counts)))
+        status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = fly_loop_seed(counts, cast, scenario, &o->loop, write_exercise);
+    for (int i = 0; status == STATUS_OK && !stop_asked() && i < cast->flight_count; i++) {
+        print_row(cast, &cast->flight[i], &counts[i]);
+        take(misses, cast, &cast->flight[i], o);
     }
+    fflush(stdout);
+    if (status == STATUS_OK && !stop_asked() && o->out) status = record(cast, o);
     cast_destroy(cast);
+    free(counts);
     scenario->duration_s = as_given.duration_s;
     scenario->dis.threshold_m = as_given.dis.threshold_m;
     return status;

@@ -24,8 +24,9 @@ typedef struct FlyLoopCounts {
 /* Whether frames are asked for at all. */
 static inline bool fly_loop_asked(const FlyLoop *o) { return o->recogniser || o->frames || o->sights; }
 
-/* Flies the round of a held cast, and gives the cast its flight. write: a recording of the cast's exercise. scenario:
- * the cast's, which gets the duration and the threshold of the recording. Failures are logged. */
+/* Flies the rounds of a held cast, one after the other, and gives the cast its flights. counts: [flight_count of the
+ * cast]. write: a recording of the cast's exercise. scenario: the cast's, which gets the duration and the threshold of
+ * the recording. Failures are logged. */
 typedef Status FlyLoopWrite(const Cast *cast, const char *path, const char *comment);
 Status fly_loop_seed(FlyLoopCounts *counts, Cast *cast, Scenario *scenario, const FlyLoop *o, FlyLoopWrite *write);
 

@@ -3,7 +3,6 @@
 
 #include "dis/capture/log.h"
 #include "sensor/node/choices/choices.h"
-#include "sensor/node/flight/node_flight.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/publish/images/image_file.h"
 #include "sensor/publish/memory/consume_memory.h"
@@ -68,15 +67,8 @@ Status run_prepare(Run *run)
             options_command(&run->options));
         return STATUS_BAD_VALUE;
     }
-    if (node_flight_asked(&run->options.config) && !run->flight) {
-        const Options *o = &run->options;
-        const Status   fit = node_flight_check(&o->config, o->command == COMMAND_RUN);
-        if (fit != STATUS_OK) return fit;
-        if (o->host_count > 1 || o->sweep || (o->command == COMMAND_REPLAY && !o->config.exercise.causal)) {
-            log_error("flight: flight.missile: in `run`, or a replay of what that recorded, with --causal: one host, no sweep");
-            return STATUS_BAD_VALUE;
-        }
-    }
+    const Status flies = run_check_flight(run);
+    if (flies != STATUS_OK) return flies;
     Status status = config_own_tables(&run->options.config);
     if (status != STATUS_OK) return status;
     status = quality_choose(&run->options.config, &run->choices, run->bands);
@@ -354,27 +346,6 @@ static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
     return STATUS_OK;
 }
 
-static double arrival_s(const void *player, double t_s) { return player_arrival_s(player, t_s); }
-
-/* The missile that the node flies itself; none where it is not asked for. */
-static Status open_flight(NodeFlight **out, const Run *run, const Player *player, const char *folder, const HostPlan *plan)
-{
-    const Options     *o = &run->options;
-    const NodeFlightOf of = {.config = &o->config,
-                             .folder = folder,
-                             .target = plan->aim,
-                             .version = run->first.version,
-                             .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
-                             .live = o->command == COMMAND_RUN,
-                             .notes = run->view.notes,
-                             .user = run->user,
-                             .note = run->note,
-                             .send = run->report,
-                             .clock = player,
-                             .arrival_s = arrival_s};
-    return node_flight_asked(&o->config) ? node_flight_open(out, &of) : STATUS_OK;
-}
-
 Status run_host(Run *run, const DisEntityId *host)
 {
     const Options *o = &run->options;
@@ -402,7 +373,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
                                .send = run->send,
                                .user = run->user};
-    status = open_flight(&flight, run, player, out, &chosen.plan);
+    status = run_open_flight(&flight, run, player, out, &chosen.plan);
     if (status != STATUS_OK) goto done;
     if (flight) run->flight = node_flight_loop(flight);
     const SessionShared shared = {.config = &o->config,
