@@ -33,7 +33,7 @@ check "operator: it ends by itself: $(tail -n 1 "$tmp/operated.out")" [ "$code" 
 check "operator: one missile" [ "$(lines_in "$tmp/operated/flight.csv")" = 2 ]
 check "operator: was guided: $(value operated guided_share), $(value operated miss_m) m" is "$(value operated guided_share)" '>' 0.05
 check "operator: garbage and what is old is counted" grep -qE 'operator: [1-9][0-9]* datagrams taken, [1-9][0-9]* refused, [1-9][0-9]* old' "$tmp/operated.out"
-replay "$tmp/operated.pcapng" "$tmp/operated-again" --causal --port 0 "${operated[@]}" --rate 2 --size 32x24
+replay "$tmp/operated.pcapng" "$tmp/operated-again" --causal --port 0 "${operated[@]}" --rate 2 --size 32x24 --to +60
 check "operator: replays" [ "$code" = 0 ]
 check "operator: the same octets" cmp -s "$tmp/operated/flight.pcapng" "$tmp/operated-again/flight.pcapng"
 check "operator: the same flight" cmp -s "$tmp/operated/flight.csv" "$tmp/operated-again/flight.csv"
@@ -55,7 +55,7 @@ check "from a place: hits within 0.3 m: $(value place miss_m)" is "$(value place
 flown coasts --rate 4 --bands lwir --set flight.late_s=2
 check "coasts, without a sight in time: $(value coasts miss_m)" is "$(value coasts miss_m)" '>' 6
 radar=(--bands lwir,radar --set radar.preset=pulse_doppler_ku --set radar.ground=false --set radar.ground_bounce=false)
-flown radar --rate 4 "${radar[@]}" --sight radar
+flown radar --rate 8 "${radar[@]}" --sight radar
 check "radar: guided: $(value radar guided_share)" is "$(value radar guided_share)" '>' 0.5
 check "radar: within the vehicle's length: $(value radar miss_m)" is "$(value radar miss_m)" '<' 6
 
