@@ -122,8 +122,8 @@ typedef struct CastRound {
 /* How a round flew: entities/exercise/cast_flight.c. */
 typedef struct FlightSample FlightSample;
 typedef struct CastFlight {
-    int    round, samples, end; /* end: a FlightEnd of entities/flight/engagement.h */
-    bool   hit, held; /* held: cast_create_held, and cast_take_flight has not been called */
+    int    round, samples, end;       /* end: a FlightEnd of entities/flight/engagement.h */
+    bool   hit, held;                 /* held: cast_create_held, and cast_take_flight has not been called */
     double miss_m, flight_s, end_mps; /* closest approach to the aim point, as if it flew on; until its Detonation */
     double most_lateral_mps2, guided_share;
     FlightSample *sample; /* [samples], of 10 ms; of a round that is held the launch alone */

@@ -208,9 +208,10 @@ Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
     int             flown = 0;
     for (int i = 0; i < cast->round_count; i++) flown += *s->shot[cast->round[i].shot].flies != 0;
     if (cast->held && flown == 0) {
-        log_error("scenario: %s: no shot flies: in a loop with frames one does, or several one after the other; give it "
-                  "`flies: ROW`, or --missile ROW",
-                  s->path);
+        log_error(
+            "scenario: %s: no shot flies: in a loop with frames one does, or several one after the other; give it "
+            "`flies: ROW`, or --missile ROW",
+            s->path);
         return STATUS_BAD_VALUE;
     }
     if (flown && !(cast->flight = calloc((size_t)flown, sizeof *cast->flight))) return STATUS_NO_MEMORY;

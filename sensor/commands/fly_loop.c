@@ -31,7 +31,7 @@ typedef struct Flying {
     FlyLoopCounts *counts; /* [flight_count of the cast] */
     FlyLoopWrite  *write;
     Scenario      *scenario;
-    DisLog        *log_of; /* [rounds]: of the exercise as it is after each but the last */
+    DisLog        *log_of;         /* [rounds]: of the exercise as it is after each but the last */
     int            flight, rounds; /* of the cast, in the air; how many have ended */
     int64_t        offset;         /* ticks of the node less those of the scenario */
     Status         status;         /* of a hand-over */
@@ -132,7 +132,8 @@ static int next_round(const Cast *cast, int other)
 {
     int next = -1;
     for (int i = 0; i < cast->flight_count; i++)
-        if (i != other && cast->flight[i].held && (next < 0 || cast->flight[i].tick < cast->flight[next].tick)) next = i;
+        if (i != other && cast->flight[i].held && (next < 0 || cast->flight[i].tick < cast->flight[next].tick))
+            next = i;
     return next;
 }
 

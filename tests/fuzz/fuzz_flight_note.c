@@ -1,4 +1,5 @@
-/* tests/fuzz/fuzz_flight_note.c: any octets as the notes of a recording: a flight's are what would be written of them. */
+/* tests/fuzz/fuzz_flight_note.c: any octets as the notes of a recording: a flight's are what would be written of them.
+ */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "sensor/node/flight/flight_note.h"

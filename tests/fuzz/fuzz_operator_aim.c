@@ -19,6 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     OperatorAim  aim = {.number = -7};
     const Status status = operator_aim_parse(&aim, data, size);
     if (status != STATUS_OK && aim.number != -7) abort();
-    if (status == STATUS_OK && !(aim.number >= 0 && fabs(aim.azimuth_rad) < 7 && fabs(aim.elevation_rad) < 1.6)) abort();
+    if (status == STATUS_OK && !(aim.number >= 0 && fabs(aim.azimuth_rad) < 7 && fabs(aim.elevation_rad) < 1.6))
+        abort();
     return 0;
 }

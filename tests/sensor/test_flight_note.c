@@ -37,7 +37,8 @@ static void notes_come_back_to_the_bit(void **state)
     flight_note_text(at, &want);
     CHECK(flight_notes_read(&got, &count, text) == STATUS_OK);
     CHECK(count == 2 && got[0].launch && got[0].tick == 1371200);
-    CHECK(!got[1].launch && got[1].after && got[1].taken_s == want.taken_s && got[1].usable.from_s == want.usable.from_s);
+    CHECK(!got[1].launch && got[1].after && got[1].taken_s == want.taken_s &&
+          got[1].usable.from_s == want.usable.from_s);
     CHECK(memcmp(got[1].usable.sight.eye_ecef, want.usable.sight.eye_ecef, 9 * sizeof(double)) == 0);
     CHECK(got[1].usable.sight.range_m == 0.1 && isnan(got[1].usable.sight.closing_mps));
     for (int k = 0; k < 3; k++)
@@ -50,8 +51,8 @@ static void what_is_no_note_is_passed_over(void **state)
 {
     (void)state;
     static const char *const wrong[] = {"pitviper: missile launched at 5", "pitviper: missile launched at 05 ms",
-                                        "pitviper: missile launched at 99999999999999999999 ms", "pitviper: sight before 1",
-                                        "pitviper: sight"};
+                                        "pitviper: missile launched at 99999999999999999999 ms",
+                                        "pitviper: sight before 1", "pitviper: sight"};
     char                     text[flight_note_size];
     FlightNote               note = some_note(), got;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) CHECK(!flight_note_read(&got, wrong[i]));
@@ -72,10 +73,11 @@ static Status parse(OperatorAim *out, const char *line)
 static void an_aim_is_a_line(void **state)
 {
     (void)state;
-    static const char *const wrong[] = {"",           "aim",           "aim 1 2",      "aim 1 2 91",  "aim 1 361 0",
-                                        "aim -1 2 3", "aim 1 nan 3",   "aim 1 2 3 go", "aim 1 2 3  ", "aim  1 2 3",
-                                        "Aim 1 2 3",  "aim 1 2 3\n\n", "aim 1.5 2 3",  "aim 1 2 3 launch now"};
-    OperatorAim              aim;
+    static const char *const wrong[] = {
+        "",           "aim",           "aim 1 2",      "aim 1 2 91",          "aim 1 361 0",
+        "aim -1 2 3", "aim 1 nan 3",   "aim 1 2 3 go", "aim 1 2 3  ",         "aim  1 2 3",
+        "Aim 1 2 3",  "aim 1 2 3\n\n", "aim 1.5 2 3",  "aim 1 2 3 launch now"};
+    OperatorAim aim;
     CHECK(parse(&aim, "aim 7 90 -30\n") == STATUS_OK && aim.number == 7 && !aim.launch);
     CHECK_NEAR(aim.azimuth_rad, 1.5707963267948966, 1e-15);
     CHECK_NEAR(aim.elevation_rad, -0.52359877559829882, 1e-15);
@@ -250,13 +252,12 @@ static void the_strongest_echo_in_the_gate_is_followed(void **state)
 
 int main(void)
 {
-    static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(notes_come_back_to_the_bit),
-        cmocka_unit_test(what_is_no_note_is_passed_over),
-        cmocka_unit_test(an_aim_is_a_line),
-        cmocka_unit_test(an_aim_is_of_the_level_at_the_missile),
-        cmocka_unit_test(the_newest_aim_counts_and_no_press_is_lost),
-        cmocka_unit_test(reports_keep_dead_reckoning_within_the_threshold),
-        cmocka_unit_test(the_strongest_echo_in_the_gate_is_followed)};
+    static const struct CMUnitTest tests[] = {cmocka_unit_test(notes_come_back_to_the_bit),
+                                              cmocka_unit_test(what_is_no_note_is_passed_over),
+                                              cmocka_unit_test(an_aim_is_a_line),
+                                              cmocka_unit_test(an_aim_is_of_the_level_at_the_missile),
+                                              cmocka_unit_test(the_newest_aim_counts_and_no_press_is_lost),
+                                              cmocka_unit_test(reports_keep_dead_reckoning_within_the_threshold),
+                                              cmocka_unit_test(the_strongest_echo_in_the_gate_is_followed)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

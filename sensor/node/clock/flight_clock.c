@@ -11,7 +11,8 @@ static int first_frame(const FlightClock *c)
 static ClockAnswer next(FrameTime *out, FrameClock *clock)
 {
     FlightClock *c = (FlightClock *)clock;
-    if (c->loop->ended && c->hand_over && c->hand_over(c->user, frame_grid_s(&c->grid, c->next))) c->next = first_frame(c);
+    if (c->loop->ended && c->hand_over && c->hand_over(c->user, frame_grid_s(&c->grid, c->next)))
+        c->next = first_frame(c);
     if (c->loop->ended || c->loop->strange || c->loop->out_of_memory || c->next > 999999) return CLOCK_END;
     *out = (FrameTime){.number = c->next, .t_s = frame_grid_s(&c->grid, c->next)};
     return CLOCK_DUE;

@@ -135,7 +135,7 @@ static void launch(FlightLoop *l, const double *target_ecef)
 
 void flight_loop_tick(FlightLoop *l, const LoopScene *scene, double t_s, const double target_ecef[3])
 {
-    const int64_t tick = llround(t_s / l->world.step_s), from = tick - loop_tick_ms;
+    const int64_t      tick = llround(t_s / l->world.step_s), from = tick - loop_tick_ms;
     const FlightHooks *hooks = l->hooks;
     if (hooks && hooks->before) hooks->before(hooks->user, t_s);
     if (!l->launched && l->launch_tick <= tick &&

@@ -86,7 +86,8 @@ typedef struct FlightHooks {
     void (*boundary)(void *user, double t_s);
     /* Before it is flown to a tick of 10 ms. */
     void (*before)(void *user, double tick_s);
-    /* Not launched yet: it is, at launch_tick, which has come at this tick: from where, and how fast. False: not now. */
+    /* Not launched yet: it is, at launch_tick, which has come at this tick: from where, and how fast. False: not now.
+     */
     bool (*launch)(void *user, const LoopScene *scene, double tick_s, const double target_ecef[3]);
     /* It has flown to a tick. */
     void (*flown)(void *user, const LoopScene *scene, double tick_s);
@@ -100,18 +101,18 @@ struct FlightLoop {
     /* ---- given */
     LoopSource         source;
     const FlightHooks *hooks; /* NULL: none */
-    DisEntityId id, target;
-    Missile     missile; /* its fuze_m is the distance at which it counts as a hit */
-    FlightWorld world;
-    int64_t     launch_tick;
-    double      p_ecef[3], v_ecef_mps[3]; /* launch */
-    double      late_s, memory;           /* memory: of the sight filter */
-    double      limit_s, start_s;         /* wall clock: longest wait for an answer, and for the first */
+    DisEntityId        id, target;
+    Missile            missile; /* its fuze_m is the distance at which it counts as a hit */
+    FlightWorld        world;
+    int64_t            launch_tick;
+    double             p_ecef[3], v_ecef_mps[3]; /* launch */
+    double             late_s, memory;           /* memory: of the sight filter */
+    double             limit_s, start_s;         /* wall clock: longest wait for an answer, and for the first */
     /* Whether the recogniser has ended; then nothing is waited for. NULL: it is not asked. */
     bool (*gone)(void *user);
     void *user;
     /* ---- as it flies */
-    bool         over; /* by its hooks: the last of a salvo has ended */
+    bool         over;                                    /* by its hooks: the last of a salvo has ended */
     bool         launched, ended, out_of_memory, strange; /* strange: a recording that lacks a frame */
     FlightEnd    end;
     FlightState  state;
@@ -128,7 +129,7 @@ struct FlightLoop {
     LoopCamera  eye; /* of the last frame */
     LoopFrame   waiting[loop_waiting_most];
     int         first, count, frames;
-    double      least_from_s; /* no sight that is taken now guides before */
+    double      least_from_s;              /* no sight that is taken now guides before */
     LoopUsable  usable[loop_waiting_most]; /* a ring: the newest is usable[(usable_count - 1) % most] */
     int64_t     usable_count;
     SightFilter filter;

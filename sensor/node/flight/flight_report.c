@@ -37,8 +37,7 @@ static void send_fire(const FlightReport *r, const FlightLoop *l, const LoopScen
                     .munition = l->id,
                     .event = event_of(r, l),
                     .descriptor = descriptor(r)};
-    if (scene->body_at && scene->body_at(&target, scene->user, l->target, t_s))
-        v3_sub(line, target.p_ecef, l->p_ecef);
+    if (scene->body_at && scene->body_at(&target, scene->user, l->target, t_s)) v3_sub(line, target.p_ecef, l->p_ecef);
     pdu.range_m = (float)v3_length(line);
     for (int k = 0; k < 3; k++) {
         pdu.p_ecef[k] = l->p_ecef[k];
@@ -119,9 +118,9 @@ static void send_detonation(const FlightReport *r, const FlightLoop *l, const Lo
     pdu.munition = l->id;
     pdu.event = event_of(r, l);
     pdu.descriptor = descriptor(r);
-    pdu.result = (uint8_t)(l->hit                         ? dis_result_entity_impact
+    pdu.result = (uint8_t)(l->hit                        ? dis_result_entity_impact
                            : l->end == FLIGHT_END_GROUND ? dis_result_ground_impact
-                                                          : dis_result_none);
+                                                         : dis_result_none);
     for (int k = 0; k < 3; k++) {
         pdu.p_ecef[k] = l->end_ecef[k];
         pdu.velocity_mps[k] = (float)l->state.v_ecef_mps[k];

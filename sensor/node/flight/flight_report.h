@@ -1,5 +1,5 @@
-/* sensor/node/flight/flight_report.h: a missile in the loop as others in the exercise see it: its Fire, Entity States and
- * Detonation.
+/* sensor/node/flight/flight_report.h: a missile in the loop as others in the exercise see it: its Fire, Entity States
+ * and Detonation.
  *
  * An Entity State is due at each tick of 10 ms at which dead reckoning of the last one is a threshold off, or a
  * heartbeat after it; so at every tick a receiver's dead reckoning is within the thresholds, as far as the network
@@ -25,13 +25,13 @@ typedef struct FlightReportOf {
 
 typedef struct FlightReport {
     FlightReportOf of;
-    uint16_t       event;   /* number of the Fire */
+    uint16_t       event; /* number of the Fire */
     bool           known, closed;
-    double         said_s;  /* of the last Entity State */
-    Kinematics     said;    /* as rounded in it */
-    FlightState    before;  /* at the tick before */
+    double         said_s; /* of the last Entity State */
+    Kinematics     said;   /* as rounded in it */
+    FlightState    before; /* at the tick before */
     bool           before_known;
-    uint64_t       states;  /* Entity States sent */
+    uint64_t       states; /* Entity States sent */
 } FlightReport;
 
 /* At each tick of 10 ms from the launch on: what is due of it. The Detonation, and an Entity State that deactivates,

@@ -34,14 +34,14 @@ struct NodeFlight {
     FlightReport   report;
     DisEntityId    shooter; /* 0:0:0: from place_ecef */
     double         place_ecef[3];
-    int            round; /* from 0 */
+    int            round;   /* from 0 */
     double         armed_s; /* not launched before; NAN: it waits for the frame that says so */
     double         first_s; /* exercise time of the first launch */
     FlightNote    *noted;   /* [noted_count] NULL: none */
     int            noted_count, noted_next;
-    bool           replays; /* by notes */
-    double         frame_s; /* of the last frame */
-    bool           looked;  /* its eye has been asked for */
+    bool           replays;  /* by notes */
+    double         frame_s;  /* of the last frame */
+    bool           looked;   /* its eye has been asked for */
     OperatorSight *operator; /* NULL: there is none */
     DisRecorder   *recorder;
     Status         status; /* of files: the first failure */
@@ -80,9 +80,10 @@ static void note_launch(NodeFlight *n)
     n->of.note(n->of.user, text);
 }
 
-/* The direction of launch: to the target, or steeper by the loft's angle; and the speed of the row, which a shooter that
- * is faster already has. */
-static bool launch_velocity(double v_ecef_mps[3], const NodeFlight *n, const double p_ecef[3], const double target_ecef[3])
+/* The direction of launch: to the target, or steeper by the loft's angle; and the speed of the row, which a shooter
+ * that is faster already has. */
+static bool launch_velocity(double v_ecef_mps[3], const NodeFlight *n, const double p_ecef[3],
+                            const double target_ecef[3])
 {
     const Missile *m = &n->loop.missile;
     Geodetic       place;
@@ -140,8 +141,8 @@ static void conclude(NodeFlight *n)
                 .end = l->end,
                 .seen = l->verdicts[LOOP_SEEN]};
     n->round++;
-    log_info("flight: %u:%u:%u ended at %.2f s: %s, closest approach %.3g m", l->id.site, l->id.application, l->id.entity,
-             l->end_s, flight_end_name(l->end), l->miss.least_m);
+    log_info("flight: %u:%u:%u ended at %.2f s: %s, closest approach %.3g m", l->id.site, l->id.application,
+             l->id.entity, l->end_s, flight_end_name(l->end), l->miss.least_m);
 }
 
 /* The next missile takes the frame, when the one before has ended. */
@@ -183,7 +184,7 @@ static void operate(NodeFlight *n)
     OperatorAim aim;
     FlightLoop *l = &n->loop;
     double      los[3];
-    if (!n->operator || !operator_sight_newest(&aim, n->operator)) return;
+    if (!n->operator|| !operator_sight_newest(&aim, n->operator)) return;
     if (aim.launch && isnan(n->armed_s)) n->armed_s = -INFINITY;
     if (!l->launched || l->ended || !operator_direction(los, &aim, l->eye.p_ecef)) return;
     if (loop_sights_direct(l, los, NAN, NAN)) l->verdicts[LOOP_SEEN]++;
@@ -267,8 +268,8 @@ static bool read_place(double p_ecef[3], const char *text)
 
 bool flight_mount_good(const Config *config)
 {
-    static const char *const pointed[] = {"gimbal_limit_deg", "gimbal_rate_dps", "gimbal_lag_s",  "mount",
-                                          "mount_x_m",        "mount_y_m",       "mount_z_m",     "mount_yaw_deg",
+    static const char *const pointed[] = {"gimbal_limit_deg", "gimbal_rate_dps", "gimbal_lag_s", "mount",
+                                          "mount_x_m",        "mount_y_m",       "mount_z_m",    "mount_yaw_deg",
                                           "mount_pitch_deg"};
     char                     key[40];
     for (size_t i = 0; i < sizeof pointed / sizeof *pointed; i++) {
@@ -291,9 +292,10 @@ Status node_flight_check(const Config *config, bool live)
     const int     sight = config->flight.sight;
     if (!flight_mount_good(config)) return STATUS_BAD_VALUE;
     if (!dis_entity_id_parse(&id, config->flight.from) && !read_place(p, config->flight.from)) {
-        log_error("flight: flight.from: '%s' is neither the shooter, site:application:entity, nor a place, LAT,LON,HEIGHT in "
-                  "degrees and metres above the ellipsoid",
-                  config->flight.from);
+        log_error(
+            "flight: flight.from: '%s' is neither the shooter, site:application:entity, nor a place, LAT,LON,HEIGHT in "
+            "degrees and metres above the ellipsoid",
+            config->flight.from);
         return STATUS_BAD_VALUE;
     }
     if (!scenario_type_parse(&type, config->flight.type)) {
@@ -303,8 +305,9 @@ Status node_flight_check(const Config *config, bool live)
     }
     const Status status = read_row(&row, config);
     if (status != STATUS_OK) return status;
-    const char *wrong = row.guidance == MISSILE_COMMAND ? "flight.missile: this row is commanded from its launcher and has "
-                                                          "no seeker, whose frames could guide it"
+    const char *wrong = row.guidance == MISSILE_COMMAND
+                            ? "flight.missile: this row is commanded from its launcher and has "
+                              "no seeker, whose frames could guide it"
                         : *config->exercise.cigi ? "flight.missile: a CIGI host moves the eye: without exercise.cigi"
                         : *config->exercise.host && strcmp(config->exercise.host, "observer") != 0
                             ? "flight.missile: the missile is the host: leave exercise.host (--host) out"
@@ -332,14 +335,15 @@ static Status begin(NodeFlight *n)
     n->replays = n->noted_count > 0;
     if (!n->of.live && !n->replays &&
         (config->flight.sight == FLIGHT_SIGHT_RECOGNISER || config->flight.sight == FLIGHT_SIGHT_OPERATOR)) {
-        log_error("flight: flight.sight: this recording has no notes of a flight (`pitviper run --fly ROW --record LOG`, a "
-                  "pcapng), and a replay does not wait for answers: truth or radar, or `pitviper fly`");
+        log_error(
+            "flight: flight.sight: this recording has no notes of a flight (`pitviper run --fly ROW --record LOG`, a "
+            "pcapng), and a replay does not wait for answers: truth or radar, or `pitviper fly`");
         return STATUS_BAD_VALUE;
     }
     l->source = n->replays ? LOOP_GIVEN : source_of[config->flight.sight];
     l->missile.fuze_m = fmax(l->missile.fuze_m, config->flight.hit_m);
-    l->id = (DisEntityId){(uint16_t)config->node.site, (uint16_t)config->node.application,
-                          (uint16_t)config->flight.entity};
+    l->id =
+        (DisEntityId){(uint16_t)config->node.site, (uint16_t)config->node.application, (uint16_t)config->flight.entity};
     l->target = n->of.target;
     l->late_s = config->flight.late_s;
     l->memory = config->flight.memory;
@@ -399,9 +403,9 @@ static Status write_table(const NodeFlight *n)
             const Flown *f = &n->flown[i];
             fprintf(file, "%d,%u:%u:%u,%s,%.3f,%.6f,%s,%s,%.6g,%.2f,%.2f,%.4f\n", i + 1, f->id.site, f->id.application,
                     f->id.entity, n->loop.missile.name, f->fire_s, f->end_s - f->fire_s,
-                    f->hit                             ? "entity"
+                    f->hit                        ? "entity"
                     : f->end == FLIGHT_END_GROUND ? "ground"
-                                                       : "none",
+                                                  : "none",
                     flight_end_name(f->end), f->miss_m, f->end_mps, f->most_lateral_mps2, f->guided_share);
         }
         if (output_end(file, path)) return STATUS_OK;

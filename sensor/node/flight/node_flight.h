@@ -1,11 +1,11 @@
 /* sensor/node/flight/node_flight.h: the missile that a node flies itself, in an exercise that others make: `run --fly`,
  * and a replay of what that recorded.
  *
- * Everything that acts on the world acts at a frame: before one, what has been answered by then is taken, and guides from
- * its time on; a launch, and the hand-over from a missile that has ended to the next of a salvo, is at one. Each such act
- * is noted in the recording (flight_note.h). A replay of a recording with such notes flies by them; one of another
- * recording flies anew, by truth or by its radar. Fire, Entity States and Detonation are sent, and written with the time
- * of the exercise's arrival to DIR/flight.pcapng; DIR/flight.csv has a row a missile. */
+ * Everything that acts on the world acts at a frame: before one, what has been answered by then is taken, and guides
+ * from its time on; a launch, and the hand-over from a missile that has ended to the next of a salvo, is at one. Each
+ * such act is noted in the recording (flight_note.h). A replay of a recording with such notes flies by them; one of
+ * another recording flies anew, by truth or by its radar. Fire, Entity States and Detonation are sent, and written with
+ * the time of the exercise's arrival to DIR/flight.pcapng; DIR/flight.csv has a row a missile. */
 #ifndef SENSOR_NODE_FLIGHT_NODE_FLIGHT_H
 #define SENSOR_NODE_FLIGHT_NODE_FLIGHT_H
 
@@ -22,8 +22,8 @@ typedef struct NodeFlightOf {
     DisEntityId   target;
     uint8_t       version, exercise; /* as in the exercise */
     bool          live;
-    const char   *notes; /* of the recording that is replayed, DisLog.notes; NULL: none */
-    void         *user;  /* of note and send */
+    const char   *notes;                        /* of the recording that is replayed, DisLog.notes; NULL: none */
+    void         *user;                         /* of note and send */
     void (*note)(void *user, const char *text); /* into the recording; NULL: there is none */
     Status (*send)(void *user, const uint8_t *pdu, size_t octets); /* NULL: nothing is sent */
     const void *clock;

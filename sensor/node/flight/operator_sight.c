@@ -34,7 +34,8 @@ Status operator_aim_parse(OperatorAim *out, const uint8_t *bytes, size_t octets)
         if (bytes[i] < ' ' || bytes[i] > '~') return STATUS_BAD_VALUE;
     memcpy(line, bytes, octets);
     line[octets] = 0;
-    const char *const said = word(&at), *const number = word(&at), *const azimuth = word(&at), *const elevation = word(&at);
+    const char *const said = word(&at), *const number = word(&at), *const azimuth = word(&at),
+                      *const elevation = word(&at);
     if (!said || strcmp(said, "aim") != 0 || !number || !azimuth || !elevation) return STATUS_BAD_VALUE;
     if (!text_to_long(&aim.number, number) || !text_to_double(&azimuth_deg, azimuth) ||
         !text_to_double(&elevation_deg, elevation))
@@ -78,7 +79,8 @@ Status operator_sight_open(OperatorSight **out, int port)
     if (!s) return STATUS_NO_MEMORY;
     s->socket = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (s->socket < 0 || bind(s->socket, (const struct sockaddr *)&own, sizeof own) != 0) {
-        log_error("flight: flight.operator_port: port %d cannot be listened on: %s; choose another", port, strerror(errno));
+        log_error("flight: flight.operator_port: port %d cannot be listened on: %s; choose another", port,
+                  strerror(errno));
         if (s->socket >= 0) close(s->socket);
         free(s);
         return STATUS_IO;

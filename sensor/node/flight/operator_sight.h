@@ -3,8 +3,8 @@
  *     aim NUMBER AZIMUTH_DEG ELEVATION_DEG [launch]
  *
  * NUMBER grows from datagram to datagram; one that does not is refused, until a second without any has passed (an
- * operator's program that was started anew). AZIMUTH_DEG is clockwise from north, ELEVATION_DEG above level, both of the
- * line of sight at the missile; `launch`: the key is pressed. A line feed may follow. Anything else is refused, and
+ * operator's program that was started anew). AZIMUTH_DEG is clockwise from north, ELEVATION_DEG above level, both of
+ * the line of sight at the missile; `launch`: the key is pressed. A line feed may follow. Anything else is refused, and
  * counted. */
 #ifndef SENSOR_NODE_FLIGHT_OPERATOR_SIGHT_H
 #define SENSOR_NODE_FLIGHT_OPERATOR_SIGHT_H

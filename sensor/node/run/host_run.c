@@ -367,12 +367,12 @@ Status run_host(Run *run, const DisEntityId *host)
     if (status != STATUS_OK) goto done;
     open_span(&chosen.plan, run, player);
     run_folder(out, o, chosen.plan.host);
-    const DisOf         dis = {.config = &o->config,
-                               .bands = run->bands,
-                               .version = run->first.version,
-                               .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
-                               .send = run->send,
-                               .user = run->user};
+    const DisOf dis = {.config = &o->config,
+                       .bands = run->bands,
+                       .version = run->first.version,
+                       .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
+                       .send = run->send,
+                       .user = run->user};
     status = run_open_flight(&flight, run, player, out, &chosen.plan);
     if (status != STATUS_OK) goto done;
     if (flight) run->flight = node_flight_loop(flight);

@@ -17,7 +17,8 @@ typedef struct RunEnd {
 /* Whether a missile of the node's own (flight.missile) fits the run; else logged. */
 Status run_check_flight(const Run *run);
 /* Opens it; *out stays where it is not asked for. folder: of the products. */
-Status run_open_flight(NodeFlight **out, const Run *run, const Player *player, const char *folder, const HostPlan *plan);
+Status run_open_flight(NodeFlight **out, const Run *run, const Player *player, const char *folder,
+                       const HostPlan *plan);
 /* Writes run.json. */
 Status run_write(const Run *run, const RunEnd *end);
 /* Writes run.json for the frames that were rendered, also when the run stopped early, and tells the user where they

@@ -6,7 +6,8 @@ Status run_check_flight(const Run *run)
     const Options *o = &run->options;
     if (!node_flight_asked(&o->config) || run->flight) return STATUS_OK;
     if (o->host_count > 1 || o->sweep || (o->command == COMMAND_REPLAY && !o->config.exercise.causal)) {
-        log_error("flight: flight.missile: in `run`, or a replay of what that recorded, with --causal: one host, no sweep");
+        log_error(
+            "flight: flight.missile: in `run`, or a replay of what that recorded, with --causal: one host, no sweep");
         return STATUS_BAD_VALUE;
     }
     return node_flight_check(&o->config, o->command == COMMAND_RUN);
