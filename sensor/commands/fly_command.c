@@ -50,6 +50,7 @@ static const char help[] =
     "`pitviper\n"
     "replay` for the frames follow --, as --size, --bands, --rate (20), --set.\n"
     "  --frames DIR         renders, into DIR; without --recogniser the line of sight of each frame is the true one\n"
+    "  --sight WHAT         without --recogniser: truth, or radar: the strongest detection of radar.preset in the gate\n"
     "  --recogniser COMMAND a program that answers each frame by UDP (`pitviper help answers`); by /bin/sh, with\n"
     "                       PITVIPER_MEMORY, PITVIPER_PORT and PITVIPER_OUT in its environment; DIR/sights.csv has its "
     "answers\n"
@@ -80,6 +81,8 @@ static int parse_wrong(const Options *o)
 {
     if (o->loop.recogniser && o->loop.sights)
         return command_line_wrong("fly", "--sights has the answers of a flight before: without --recogniser");
+    if (o->loop.radar && (o->loop.sights || o->loop.recogniser))
+        return command_line_wrong("fly", "--sight radar: without --recogniser and --sights");
     if (o->loop.sights && o->seeds > 1) return command_line_wrong("fly", "--sights is of one flight: without --seeds");
     if (o->loop.given_count > 0 && !fly_loop_asked(&o->loop))
         return command_line_wrong("fly", "options after -- are of frames: with --frames DIR or --recogniser COMMAND");
@@ -101,21 +104,16 @@ static int parse(Options *o, int argc, char **argv)
         LIMIT,
         START,
         SIGHTS,
+        SIGHT,
         PLOT
     };
-    static const struct option options[] = {{"out", 1, NULL, OUT},
-                                            {"overwrite", 0, NULL, OVERWRITE},
-                                            {"missile", 1, NULL, MISSILE},
-                                            {"seeds", 1, NULL, SEEDS},
-                                            {"set", 1, NULL, SET},
-                                            {"plot", 1, NULL, PLOT},
-                                            {"frames", 1, NULL, FRAMES},
-                                            {"recogniser", 1, NULL, RECOGNISER},
-                                            {"limit", 1, NULL, LIMIT},
-                                            {"start", 1, NULL, START},
-                                            {"sights", 1, NULL, SIGHTS},
-                                            {"help", 0, NULL, HELP},
-                                            {NULL, 0, NULL, 0}};
+    static const struct option options[] = {{"out", 1, NULL, OUT},         {"overwrite", 0, NULL, OVERWRITE},
+                                            {"missile", 1, NULL, MISSILE}, {"seeds", 1, NULL, SEEDS},
+                                            {"set", 1, NULL, SET},         {"plot", 1, NULL, PLOT},
+                                            {"frames", 1, NULL, FRAMES},   {"recogniser", 1, NULL, RECOGNISER},
+                                            {"limit", 1, NULL, LIMIT},     {"start", 1, NULL, START},
+                                            {"sights", 1, NULL, SIGHTS},   {"sight", 1, NULL, SIGHT},
+                                            {"help", 0, NULL, HELP},       {NULL, 0, NULL, 0}};
     for (int i = 1; i < argc; i++) /* what follows is of the frames */
         if (strcmp(argv[i], "--") == 0) {
             o->loop.given = argv + i + 1;
@@ -162,6 +160,15 @@ static int parse(Options *o, int argc, char **argv)
             break;
         case SIGHTS:
             o->loop.sights = optarg;
+            break;
+        case SIGHT:
+            o->loop.radar = strcmp(optarg, "radar") == 0;
+            ok = o->loop.radar || strcmp(optarg, "truth") == 0;
+            if (!ok)
+                log_error(
+                    "fly: --sight: '%s' is neither truth nor radar; a recogniser is --recogniser COMMAND, an operator "
+                    "steers in `pitviper run --fly ROW`",
+                    optarg);
             break;
         case HELP:
             fputs(help, stdout);

@@ -178,7 +178,7 @@ static bool hand_over(void *user, double t_s)
 static Status begin(Flying *f, const FlyLoop *o)
 {
     Status status = STATUS_OK;
-    f->loop->source = o->sights ? LOOP_RECORDED : o->recogniser ? LOOP_ANSWERS : LOOP_TRUE;
+    f->loop->source = o->sights ? LOOP_RECORDED : o->recogniser ? LOOP_ANSWERS : o->radar ? LOOP_RADAR : LOOP_TRUE;
     f->loop->limit_s = o->limit_s;
     f->loop->start_s = o->start_s;
     f->flight = next_round(f->cast, -1);
@@ -240,6 +240,10 @@ static Status node_options(Options *out, Flying *f, const Cast *cast)
         return STATUS_BAD_VALUE;
     }
     if (!flight_mount_good(&out->config)) return STATUS_BAD_VALUE;
+    if (o->radar && strcmp(out->config.radar.preset, "none") == 0) {
+        log_error("fly: --sight radar: of which radar? for example -- --bands lwir,radar --set radar.preset=seeker_35");
+        return STATUS_BAD_VALUE;
+    }
     if (*out->config.flight.missile) {
         log_error("fly: flight.missile: is of a live node; the shot's `flies`, or --missile, says what flies");
         return STATUS_BAD_VALUE;
@@ -344,8 +348,9 @@ static void drop(Flying *f)
 
 static Status write_sights(const Flying *f)
 {
-    char path[path_size + 16];
-    if (!f->loop->ended || !f->o->frames || f->loop->source == LOOP_TRUE) return STATUS_OK;
+    char       path[path_size + 16];
+    const bool answered = f->loop->source == LOOP_ANSWERS || f->loop->source == LOOP_RECORDED;
+    if (!f->loop->ended || !f->o->frames || !answered) return STATUS_OK;
     snprintf(path, sizeof path, "%s/sights.csv", f->out);
     return loop_sights_write(f->loop, path);
 }
