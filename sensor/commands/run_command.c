@@ -4,6 +4,7 @@
 #include "pitviper_output.h"
 
 #include "sensor/node/clock/live_clock.h"
+#include "sensor/node/flight/node_flight.h"
 #include "sensor/node/live/health.h"
 #include "sensor/publish/consumers/consumer.h"
 #include "sensor/publish/files/frame_files.h"
@@ -368,6 +369,10 @@ static Status open_files(Live *l)
                  config->record.path, less ? "which frames give up sampling (quality.deadline)" : "",
                  radar ? ", or are without radar" : "", less ? ", and for " : "",
                  less ? ", and has frames in all" : "");
+    if (strcasecmp(output_ending(config->record.path), ".pcap") == 0 && node_flight_asked(config))
+        log_warn(
+            "run: %s has no room for how the missile flies (pcap), and no replay will fly it again; name it .pcapng",
+            config->record.path);
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 

@@ -81,4 +81,5 @@ refused "no aim" 1 'exercise.aim says what it flies at' --causal "${few[@]}" --f
 refused "no such row" 1 'nosuch' --causal "${few[@]}" "${fly[@]}" --fly nosuch
 refused "no seeker" 1 'has no seeker' --causal "${few[@]}" "${fly[@]}" --fly wire_at
 refused "a gimbal of its own" 1 'sensor.gimbal_rate_dps: .*leave it out' --causal "${few[@]}" "${fly[@]}" --set sensor.gimbal_rate_dps=5
+refused "an operator who does nothing" 1 'flight.operator_port: an operator is for' --causal "${few[@]}" "${fly[@]}" --set flight.operator_port=5000
 finish

@@ -186,7 +186,8 @@ static void operate(NodeFlight *n)
     double      los[3];
     if (!n->operator|| !operator_sight_newest(&aim, n->operator)) return;
     if (aim.launch && isnan(n->armed_s)) n->armed_s = -INFINITY;
-    if (!l->launched || l->ended || !operator_direction(los, &aim, l->eye.p_ecef)) return;
+    const bool steers = n->config->flight.sight == FLIGHT_SIGHT_OPERATOR;
+    if (!steers || !l->launched || l->ended || !operator_direction(los, &aim, l->eye.p_ecef)) return;
     if (loop_sights_direct(l, los, NAN, NAN)) l->verdicts[LOOP_SEEN]++;
 }
 
@@ -317,6 +318,10 @@ Status node_flight_check(const Config *config, bool live)
                             ? "flight.sight: recogniser: publish.detections_port is where its answers come: not 0"
                         : sight == FLIGHT_SIGHT_OPERATOR && !config->flight.operator_port && live
                             ? "flight.sight: operator: flight.operator_port is where the operator's aim comes: not 0"
+                        : config->flight.key && !config->flight.operator_port && live
+                            ? "flight.key: flight.operator_port is where the operator's key comes: not 0"
+                        : config->flight.operator_port && !config->flight.key && sight != FLIGHT_SIGHT_OPERATOR
+                            ? "flight.operator_port: an operator is for flight.sight: operator, or flight.key"
                         : sight == FLIGHT_SIGHT_RADAR && strcmp(config->radar.preset, "none") == 0
                             ? "flight.sight: radar: radar.preset is the seeker's radar: not none"
                             : NULL;

@@ -414,6 +414,7 @@ Status run_host(Run *run, const DisEntityId *host)
     if (status == STATUS_OK) status = closed;
     const Status landed = node_flight_close(flight);
     if (status == STATUS_OK) status = landed;
+    if (flight) run->flight = NULL;
     flight = NULL;
     if (run->live) {
         run->live->files_failed = (uint64_t)result.files_failed;
