@@ -186,7 +186,7 @@ bool cast_present(const Cast *cast, int entity, double t_s)
     const CastEntity *e = &cast->entity[entity];
     if (e->group < 0) {
         const CastRound *round = &cast->round[e->round];
-        if (cast->held && round->flight >= 0) return false;
+        if (round->flight >= 0 && cast->flight[round->flight].held) return false;
         return t_s >= round->fire_s && t_s < round->impact_s - cast->scenario->shot[round->shot].silent_s;
     }
     const ScenarioGroup *g = &cast->scenario->group[e->group];

@@ -132,15 +132,22 @@ static void sight_error(double out_ecef[3], const Cast *cast, int round, const d
     v3_add_scaled(out_ecef, out_ecef, sigma_m * random_normal(seed, 11, (uint32_t)round, 1), above);
 }
 
-/* Fired, at its target, and nothing more. */
-static Status hold(Cast *cast, CastRound *round, Scene *scene, const double at_enu[3])
+/* Where it is at its launch, and nothing more. */
+static Status keep_launch(Scene *scene)
 {
-    CastFlight       *f = scene->out;
+    const CastFlight *f = scene->out;
     const FlightWorld world = flight_world();
     FlightState       state;
     flight_launch(&state, &f->missile, &world, f->tick, f->p_ecef, f->v_ecef_mps);
     keep_sample(scene, &state);
-    if (scene->no_memory) return STATUS_NO_MEMORY;
+    return scene->no_memory ? STATUS_NO_MEMORY : STATUS_OK;
+}
+
+/* Fired, at its target, and nothing more. */
+static Status hold(Cast *cast, CastRound *round, Scene *scene, const double at_enu[3])
+{
+    if (keep_launch(scene) != STATUS_OK) return STATUS_NO_MEMORY;
+    scene->out->held = true;
     round->impact_s = INFINITY;
     round->result = dis_result_none;
     memcpy(round->impact_enu, at_enu, sizeof round->impact_enu);
@@ -148,9 +155,30 @@ static Status hold(Cast *cast, CastRound *round, Scene *scene, const double at_e
     return STATUS_OK;
 }
 
-Status cast_take_flight(Cast *cast, const CastFlown *flown)
+Status cast_hold_until(Cast *cast, int flight, double fire_s)
 {
-    CastFlight *f = &cast->flight[0];
+    CastFlight *f = &cast->flight[flight];
+    CastRound  *round = &cast->round[f->round];
+    Scene       scene = {.cast = cast, .shooter = round->shooter, .target = round->target, .out = f};
+    if (!isfinite(fire_s)) {
+        round->fire_s = INFINITY;
+        return STATUS_OK;
+    }
+    f->tick = llround(fire_s / flight_world().step_s);
+    round->fire_s = (double)f->tick * flight_world().step_s;
+    cast_launch_place(round, cast);
+    if (round->target < 0) ecef_from_enu(scene.at_ecef, &cast->ground.frame, round->impact_enu);
+    ecef_from_enu(f->p_ecef, &cast->ground.frame, round->launch_enu);
+    launch_velocity(f->v_ecef_mps, &scene, &f->missile, f->p_ecef, round->fire_s);
+    free(f->sample);
+    f->sample = NULL;
+    f->samples = 0;
+    return keep_launch(&scene);
+}
+
+Status cast_take_flight(Cast *cast, int flight, const CastFlown *flown)
+{
+    CastFlight *f = &cast->flight[flight];
     CastRound  *round = &cast->round[f->round];
     Scene       scene = {.cast = cast, .out = f};
     free(f->sample);
@@ -158,7 +186,7 @@ Status cast_take_flight(Cast *cast, const CastFlown *flown)
     f->samples = 0;
     for (int i = 0; i < flown->states; i++) keep_sample(&scene, &flown->state[i]);
     if (scene.no_memory) return STATUS_NO_MEMORY;
-    cast->held = false;
+    f->held = false;
     f->hit = flown->hit;
     f->end = flown->end;
     f->miss_m = flown->miss_m;

@@ -122,8 +122,8 @@ typedef struct CastRound {
 /* How a round flew: entities/exercise/cast_flight.c. */
 typedef struct FlightSample FlightSample;
 typedef struct CastFlight {
-    int    round, samples, end; /* end: a FlightEnd of entities/flight/engagement.h */
-    bool   hit;
+    int    round, samples, end;       /* end: a FlightEnd of entities/flight/engagement.h */
+    bool   hit, held;                 /* held: cast_create_held, and cast_take_flight has not been called */
     double miss_m, flight_s, end_mps; /* closest approach to the aim point, as if it flew on; until its Detonation */
     double most_lateral_mps2, guided_share;
     FlightSample *sample; /* [samples], of 10 ms; of a round that is held the launch alone */
@@ -151,7 +151,7 @@ typedef struct Cast {
     CastHidden     *hidden; /* [hidden_count] */
     int             flight_count;
     CastFlight     *flight; /* [flight_count] */
-    bool            held;   /* cast_create_held, and cast_take_flight has not been called */
+    bool            held;   /* by cast_create_held */
 } Cast;
 
 /* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not
@@ -159,8 +159,8 @@ typedef struct Cast {
 Status cast_create(Cast **out, const Scenario *scenario);
 /* The same; what hides is placed by what a tracer sees of plants. judge NULL: by estimates alone. */
 Status cast_create_judged(Cast **out, const Scenario *scenario, const HideJudge *judge);
-/* The same; the one shot that flies is fired and no more: another program flies it, and cast_take_flight says how.
- * STATUS_BAD_VALUE, logged: there is none, or several, or it has no seeker. */
+/* The same; rounds that fly are fired and no more: another program flies them, one after the other, and
+ * cast_take_flight says how. STATUS_BAD_VALUE, logged: there is none, or one has no seeker. */
 Status cast_create_held(Cast **out, const Scenario *scenario, const HideJudge *judge);
 void   cast_destroy(Cast *cast);
 
@@ -171,7 +171,9 @@ typedef struct CastFlown {
     bool                      hit; /* it went off at its target; else by the ground (end), or not at all */
     double                    impact_s, impact_ecef[3], miss_m;
 } CastFlown;
-Status cast_take_flight(Cast *cast, const CastFlown *flown);
+Status cast_take_flight(Cast *cast, int flight, const CastFlown *flown);
+/* Sets when a held round is launched, in whole ms; INFINITY: not so far, and nothing is heard of it. */
+Status cast_hold_until(Cast *cast, int flight, double fire_s);
 
 typedef struct CastPose {
     double p_enu[3], r_enu_from_body[9];
@@ -201,6 +203,8 @@ void   cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *roun
 /* Flies a round whose launch, shooter and target (-1: at_enu) are known: its end, result, and where it is meanwhile.
  * entities/exercise/cast_flight.c */
 Status cast_fly(Cast *cast, CastRound *round, const Missile *row, const double at_enu[3]);
+/* Where a round is launched at its fire_s. entities/exercise/cast_shots.c */
+void cast_launch_place(CastRound *round, const Cast *cast);
 /* What a hit does to the round's target. entities/exercise/cast_shots.c */
 void cast_damage(Cast *cast, const CastRound *round);
 void cast_flight_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);

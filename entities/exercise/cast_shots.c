@@ -73,7 +73,7 @@ void cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *round,
 
 /* ---- start and end of a shot -------------------------------------------------------------------- */
 
-static void launch_place(CastRound *round, const Cast *cast)
+void cast_launch_place(CastRound *round, const Cast *cast)
 {
     static const double wing[3] = {0, 0, 0.8}, turret[3] = {0, 0, -2}; /* below a stub wing; at a gun's trunnions */
     const ScenarioShot *shot = &cast->scenario->shot[round->shot];
@@ -125,7 +125,7 @@ static bool solve(CastRound *round, const Cast *cast)
 {
     const ScenarioShot *shot = &cast->scenario->shot[round->shot];
     double              at_s = round->fire_s, line[3];
-    launch_place(round, cast);
+    cast_launch_place(round, cast);
     for (int i = 0; i < 200; i++) {
         impact_place(round->impact_enu, cast, round, at_s);
         v3_sub(line, round->impact_enu, round->launch_enu);
@@ -192,7 +192,7 @@ static Status fly(Cast *cast, CastRound *round)
                   shot->flies, path);
         return status;
     }
-    launch_place(round, cast);
+    cast_launch_place(round, cast);
     impact_place(at_enu, cast, round, round->fire_s); /* of a place, whose ground it meets; a target is followed */
     at_enu[2] = exercise_ground_at(NULL, &cast->ground, at_enu[0], at_enu[1]);
     status = cast_fly(cast, round, &missile, at_enu);
@@ -207,9 +207,11 @@ Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
     const Scenario *s = cast->scenario;
     int             flown = 0;
     for (int i = 0; i < cast->round_count; i++) flown += *s->shot[cast->round[i].shot].flies != 0;
-    if (cast->held && flown != 1) {
-        log_error("scenario: %s: %d shots fly: in a loop with frames one does; give it `flies: ROW`, and rounds: 1",
-                  s->path, flown);
+    if (cast->held && flown == 0) {
+        log_error(
+            "scenario: %s: no shot flies: in a loop with frames one does, or several one after the other; give it "
+            "`flies: ROW`, or --missile ROW",
+            s->path);
         return STATUS_BAD_VALUE;
     }
     if (flown && !(cast->flight = calloc((size_t)flown, sizeof *cast->flight))) return STATUS_NO_MEMORY;

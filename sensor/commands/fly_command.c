@@ -47,10 +47,11 @@ static const char help[] =
     "shots\n"
     "                       whose munition has that name: sight_every_s, sight_late_s, sight_error_m, hit_m ...\n"
     "\n"
-    "In the loop: one missile, whose seeker's frames are rendered as it flies, and guide it. Options of `pitviper replay` "
-    "for the\n"
-    "frames follow --, as --size, --bands, --rate (20), --set.\n"
+    "In the loop: missiles one after the other, whose seeker's frames are rendered as they fly, and guide them. Options of "
+    "`pitviper\n"
+    "replay` for the frames follow --, as --size, --bands, --rate (20), --set.\n"
     "  --frames DIR         renders, into DIR; without --recogniser the line of sight of each frame is the true one\n"
+    "  --sight WHAT         without --recogniser: truth, or radar: the strongest detection of radar.preset in the gate\n"
     "  --recogniser COMMAND a program that answers each frame by UDP (`pitviper help answers`); by /bin/sh, with\n"
     "                       PITVIPER_MEMORY, PITVIPER_PORT and PITVIPER_OUT in its environment; DIR/sights.csv has its "
     "answers\n"
@@ -81,6 +82,8 @@ static int parse_wrong(const Options *o)
 {
     if (o->loop.recogniser && o->loop.sights)
         return command_line_wrong("fly", "--sights has the answers of a flight before: without --recogniser");
+    if (o->loop.radar && (o->loop.sights || o->loop.recogniser))
+        return command_line_wrong("fly", "--sight radar: without --recogniser and --sights");
     if (o->loop.sights && o->seeds > 1) return command_line_wrong("fly", "--sights is of one flight: without --seeds");
     if (o->waits && !o->loop.recogniser)
         return command_line_wrong("fly",
@@ -105,21 +108,16 @@ static int parse(Options *o, int argc, char **argv)
         LIMIT,
         START,
         SIGHTS,
+        SIGHT,
         PLOT
     };
-    static const struct option options[] = {{"out", 1, NULL, OUT},
-                                            {"overwrite", 0, NULL, OVERWRITE},
-                                            {"missile", 1, NULL, MISSILE},
-                                            {"seeds", 1, NULL, SEEDS},
-                                            {"set", 1, NULL, SET},
-                                            {"plot", 1, NULL, PLOT},
-                                            {"frames", 1, NULL, FRAMES},
-                                            {"recogniser", 1, NULL, RECOGNISER},
-                                            {"limit", 1, NULL, LIMIT},
-                                            {"start", 1, NULL, START},
-                                            {"sights", 1, NULL, SIGHTS},
-                                            {"help", 0, NULL, HELP},
-                                            {NULL, 0, NULL, 0}};
+    static const struct option options[] = {{"out", 1, NULL, OUT},         {"overwrite", 0, NULL, OVERWRITE},
+                                            {"missile", 1, NULL, MISSILE}, {"seeds", 1, NULL, SEEDS},
+                                            {"set", 1, NULL, SET},         {"plot", 1, NULL, PLOT},
+                                            {"frames", 1, NULL, FRAMES},   {"recogniser", 1, NULL, RECOGNISER},
+                                            {"limit", 1, NULL, LIMIT},     {"start", 1, NULL, START},
+                                            {"sights", 1, NULL, SIGHTS},   {"sight", 1, NULL, SIGHT},
+                                            {"help", 0, NULL, HELP},       {NULL, 0, NULL, 0}};
     for (int i = 1; i < argc; i++) /* what follows is of the frames */
         if (strcmp(argv[i], "--") == 0) {
             o->loop.given = argv + i + 1;
@@ -168,6 +166,15 @@ static int parse(Options *o, int argc, char **argv)
             break;
         case SIGHTS:
             o->loop.sights = optarg;
+            break;
+        case SIGHT:
+            o->loop.radar = strcmp(optarg, "radar") == 0;
+            ok = o->loop.radar || strcmp(optarg, "truth") == 0;
+            if (!ok)
+                log_error(
+                    "fly: --sight: '%s' is neither truth nor radar; a recogniser is --recogniser COMMAND, an operator "
+                    "steers in `pitviper run --fly ROW`",
+                    optarg);
             break;
         case HELP:
             fputs(help, stdout);
@@ -287,21 +294,24 @@ static void take(Misses *misses, const Cast *cast, const CastFlight *flight, con
     if (o->plot) fly_paths_take(&misses->paths, cast, flight);
 }
 
-/* One missile, by what is seen in its frames. */
+/* By what is seen in their frames. */
 static Status fly_in_loop(Misses *misses, Scenario *scenario, const HideJudge *hide, const Options *o)
 {
     Cast          *cast = NULL;
-    FlyLoopCounts  counts = {0};
+    FlyLoopCounts *counts = NULL;
     const Scenario as_given = *scenario;
     Status         status = cast_create_held(&cast, scenario, hide);
-    if (status == STATUS_OK) status = fly_loop_seed(&counts, cast, scenario, &o->loop, write_exercise);
-    if (status == STATUS_OK && !stop_asked()) {
-        print_row(cast, &cast->flight[0], &counts);
-        fflush(stdout);
-        take(misses, cast, &cast->flight[0], o);
-        if (o->out) status = record(cast, o);
+    if (status == STATUS_OK && !(counts = calloc((size_t)cast->flight_count, sizeof *counts)))
+        status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = fly_loop_seed(counts, cast, scenario, &o->loop, write_exercise);
+    for (int i = 0; status == STATUS_OK && !stop_asked() && i < cast->flight_count; i++) {
+        print_row(cast, &cast->flight[i], &counts[i]);
+        take(misses, cast, &cast->flight[i], o);
     }
+    fflush(stdout);
+    if (status == STATUS_OK && !stop_asked() && o->out) status = record(cast, o);
     cast_destroy(cast);
+    free(counts);
     scenario->duration_s = as_given.duration_s;
     scenario->dis.threshold_m = as_given.dis.threshold_m;
     return status;

@@ -10,6 +10,7 @@ enum { fly_loop_given_most = 128 };
 typedef struct FlyLoop {
     const char *recogniser, *frames, *sights; /* NULL: not given */
     double      limit_s, start_s;             /* wall clock: longest waits for an answer, and for the first */
+    bool        radar;                        /* sight of the seeker's radar */
     bool        overwrite, several;           /* several seeds: each has a folder of its own in `frames` */
     int         given_count;
     char      **given; /* options of `replay` */
@@ -22,10 +23,11 @@ typedef struct FlyLoopCounts {
 } FlyLoopCounts;
 
 /* Whether frames are asked for at all. */
-static inline bool fly_loop_asked(const FlyLoop *o) { return o->recogniser || o->frames || o->sights; }
+static inline bool fly_loop_asked(const FlyLoop *o) { return o->recogniser || o->frames || o->sights || o->radar; }
 
-/* Flies the round of a held cast, and gives the cast its flight. write: a recording of the cast's exercise. scenario:
- * the cast's, which gets the duration and the threshold of the recording. Failures are logged. */
+/* Flies the rounds of a held cast, one after the other, and gives the cast its flights. counts: [flight_count of the
+ * cast]. write: a recording of the cast's exercise. scenario: the cast's, which gets the duration and the threshold of
+ * the recording. Failures are logged. */
 typedef Status FlyLoopWrite(const Cast *cast, const char *path, const char *comment);
 Status fly_loop_seed(FlyLoopCounts *counts, Cast *cast, Scenario *scenario, const FlyLoop *o, FlyLoopWrite *write);
 

@@ -236,6 +236,15 @@ static DisLog world_log(Run *run)
     return run->noted ? from : all;
 }
 
+/* The first usable Entity State, whose version and exercise what is sent has. */
+static void find_first(Run *run, const DisLog *log)
+{
+    for (int i = 0; i < log->count; i++) {
+        const DisDatagram datagram = dis_log_datagram(log, i);
+        if (player_starts(&run->first, &datagram, &run->options.config)) return;
+    }
+}
+
 static Status open_log(Run *run)
 {
     const Options *o = &run->options;
@@ -258,6 +267,7 @@ static Status open_log(Run *run)
                    "node.application)",
                    (unsigned long long)run->own, o->config.node.site, o->config.node.application);
     run->view = heard = *log;
+    find_first(run, log);
     const bool starts =
         !o->config.exercise.causal || player_opening(&run->view, &heard, &run->until_s, log, &o->config);
     from = world_log(run);
@@ -285,7 +295,7 @@ static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
 
 /* Opens the sending of a replay at the pace of the recording or a multiple of it, which sends what the live node would;
  * at full speed a replay would flood the network. */
-static Status open_sending(Sending *s, Run *run, const DisLog *log)
+static Status open_sending(Sending *s, Run *run)
 {
     const Options     *o = &run->options;
     const DisUdpConfig udp = run_network(&o->config);
@@ -294,10 +304,6 @@ static Status open_sending(Sending *s, Run *run, const DisLog *log)
         log_warn("replay: publish.dis: Data PDUs are not sent at full speed; add --speed 1 to send them at the pace of "
                  "the recording");
         return STATUS_OK;
-    }
-    for (int i = 0; i < log->count; i++) {
-        const DisDatagram datagram = dis_log_datagram(log, i);
-        if (player_starts(&run->first, &datagram, &o->config)) break;
     }
     run_network_to(s->to, &udp);
     const Status status = dis_udp_open_sender(&s->udp, &udp);
@@ -381,7 +387,7 @@ static int replay(const Options *options, MadeWorld *made)
     run.log_name = basename(log_name);
     Status failed = STATUS_OK, status = lockstep_begin(&lockstep, &run, NULL);
     if (status == STATUS_OK) status = prepare(&run, host);
-    if (status == STATUS_OK) status = open_sending(&sending, &run, &run.made->log);
+    if (status == STATUS_OK) status = open_sending(&sending, &run);
     if (status == STATUS_OK) status = open_folders(&run, host);
     if (status == STATUS_OK) video_watch_print(&run.options.config, run.bands);
     if (status == STATUS_OK && run.options.host_count == 0) status = run_host(&run, NULL);

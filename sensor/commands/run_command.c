@@ -4,6 +4,7 @@
 #include "pitviper_output.h"
 
 #include "sensor/node/clock/live_clock.h"
+#include "sensor/node/flight/node_flight.h"
 #include "sensor/node/live/health.h"
 #include "sensor/publish/consumers/consumer.h"
 #include "sensor/publish/files/frame_files.h"
@@ -260,7 +261,7 @@ static bool enough(void *user)
 {
     const Live *l = user;
     const int   most = l->run.options.frames;
-    return over(l) || (most && session_result(l->session)->frames >= most);
+    return over(l) || session_flight_over(l->session) || (most && session_result(l->session)->frames >= most);
 }
 
 static Status make_frame(void *user, const FrameTime *frame)
@@ -368,6 +369,10 @@ static Status open_files(Live *l)
                  config->record.path, less ? "which frames give up sampling (quality.deadline)" : "",
                  radar ? ", or are without radar" : "", less ? ", and for " : "",
                  less ? ", and has frames in all" : "");
+    if (strcasecmp(output_ending(config->record.path), ".pcap") == 0 && node_flight_asked(config))
+        log_warn(
+            "run: %s has no room for how the missile flies (pcap), and no replay will fly it again; name it .pcapng",
+            config->record.path);
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 
@@ -455,6 +460,7 @@ int run_command(int argc, char **argv)
     l->run.publish = count_frame;
     if (l->run.options.config.quality.deadline && !*l->run.options.config.exercise.cigi) l->run.choose = choose_quality;
     if (publishes(l)) l->run.send = send_pdu;
+    l->run.report = send_pdu;
     if (*l->run.options.config.record.path) l->run.note = note;
     l->run.clock = &l->clock.clock;
     memcpy(name, l->run.options.config.record.path, sizeof name);

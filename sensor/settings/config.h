@@ -17,6 +17,7 @@ typedef struct Config {
     struct { CONFIG_DETECTOR(SETTING_MEMBER) } detector;
     struct { CONFIG_RADAR(SETTING_MEMBER) } radar;
     struct { CONFIG_EXERCISE(SETTING_MEMBER) } exercise;
+    struct { CONFIG_FLIGHT(SETTING_MEMBER) } flight;
     struct { CONFIG_NETWORK(SETTING_MEMBER) } network;
     struct { CONFIG_NODE(SETTING_MEMBER) } node;
     struct { CONFIG_PUBLISH(SETTING_MEMBER) } publish;

@@ -9,7 +9,7 @@ enum { config_paths_size = 4096 };
 
 /* clang-format off */
 #define CONFIG_ROWS(ROW) \
-    CONFIG_SENSOR(ROW) CONFIG_DETECTOR(ROW) CONFIG_RADAR(ROW) CONFIG_EXERCISE(ROW) CONFIG_NETWORK(ROW) \
+    CONFIG_SENSOR(ROW) CONFIG_DETECTOR(ROW) CONFIG_RADAR(ROW) CONFIG_EXERCISE(ROW) CONFIG_FLIGHT(ROW) CONFIG_NETWORK(ROW) \
     CONFIG_NODE(ROW) CONFIG_PUBLISH(ROW) CONFIG_RECORD(ROW) CONFIG_WEATHER(ROW) CONFIG_HEAT(ROW) CONFIG_TERRAIN(ROW) \
     CONFIG_OBSERVER(ROW) CONFIG_MODELS(ROW) CONFIG_ENTITIES(ROW) CONFIG_QUALITY(ROW) CONFIG_CACHE(ROW) CONFIG_TOP(ROW)
 
@@ -167,6 +167,36 @@ enum { config_paths_size = 4096 };
         "HOST:PORT of a CIGI 3.3 host, numeric, that gives each frame's time and eye, and waits for it; empty: none") \
     ROW(INT, exercise., cigi_port, 8005, 1, 65535, "", "UDP port on which that host is listened to") \
     ROW(INT, exercise., cigi_view, 0, 0, 65535, "", "view of that host that is the eye")
+
+#define CONFIG_FLIGHT(ROW) \
+    ROW(TEXT, flight., missile, "", 31, "", \
+        "row of etc/missiles.csv by which this node flies missiles of its own in the exercise; empty: none") \
+    ROW(TEXT, flight., from, "", 64, "", \
+        "where they are launched: the shooter, site:application:entity, or LAT,LON,HEIGHT in degrees and metres above " \
+        "the ellipsoid") \
+    ROW(DOUBLE, flight., at_s, NAN, -1e9, 1e9, "s", \
+        "exercise time of the first launch; unset: as soon as shooter and aim are there") \
+    ROW(BOOL, flight., key, false, "the first launch waits for the operator's key (flight.operator_port)") \
+    ROW(INT, flight., rounds, 1, 1, 64, "", "missiles, one after the other") \
+    ROW(DOUBLE, flight., every_s, 0, 0, 3600, "s", \
+        "least time between launches; none is before the one before has ended") \
+    ROW(CHOICE, flight., sight, FLIGHT_SIGHT_TRUTH, FlightSightOf, \
+        (FLIGHT_SIGHT_TRUTH, "truth")(FLIGHT_SIGHT_RECOGNISER, "recogniser")(FLIGHT_SIGHT_RADAR, "radar") \
+        (FLIGHT_SIGHT_OPERATOR, "operator"), \
+        "what guides them: the true line of sight of each frame; a recogniser's answers (publish.detections_port); " \
+        "detections of radar.preset; an operator's aim (flight.operator_port)") \
+    ROW(DOUBLE, flight., late_s, 0, 0, 2, "s", "least time from a frame until what was seen in it guides") \
+    /* of a camera's directions at 10 to 20 a second: as fly's */ \
+    ROW(DOUBLE, flight., memory, 0.6, 0, 0.99, "", "of the fading-memory filter that makes rates of directions") \
+    ROW(DOUBLE, flight., hit_m, 2, 0, 50, "m", "so near the aim's centre it goes off, or at the row's fuze_m") \
+    ROW(INT, flight., operator_port, 0, 0, 65535, "", "UDP port of the operator's aim; 0: none") \
+    ROW(INT, flight., entity, 1, 1, 65000, "", "entity number of the first missile, with node.site and node.application") \
+    ROW(INT, flight., force, 1, 0, 255, "", "force that they report: 0 other, 1 friendly, 2 opposing, 3 neutral") \
+    ROW(TEXT, flight., type, "2.2.225.1.1.3.0", 32, "", "entity type that they report") \
+    ROW(DOUBLE, flight., threshold_m, 0.5, 0.001, 1000, "m", \
+        "error of dead reckoning at which an Entity State is sent") \
+    ROW(DOUBLE, flight., threshold_deg, 3, 0.01, 180, "deg", "likewise, of attitude") \
+    ROW(DOUBLE, flight., heartbeat_s, 5, 0.1, 60, "s", "longest time between two Entity States")
 
 #define CONFIG_NETWORK(ROW) \
     ROW(TEXT, network., address, "", 64, "", \

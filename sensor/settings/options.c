@@ -80,6 +80,10 @@ static const struct Row {
     {"speed", SPEED, IN_REPLAY, NULL, "X", "exercise seconds per second, or max (default: max)"},
     {"cigi", KEY, IN_BOTH, "exercise.cigi", "HOST:PORT",
      "a CIGI 3.3 host gives each frame's time and eye, and waits for it"},
+    {"fly", KEY, IN_BOTH, "flight.missile", "ROW",
+     "fly a missile of this row of etc/missiles.csv from flight.from at\nexercise.aim, and send what others must know of it"},
+    {"sight", KEY, IN_BOTH, "flight.sight", "WHAT",
+     "what guides it: truth, recogniser, radar, operator (default: truth)"},
     {"causal", KEY, IN_REPLAY, "exercise.causal=true", NULL,
      "use only what had been received by the time of each frame and each\n"
      "choice: the frames of `pitviper run`, to the bit"},

@@ -111,7 +111,7 @@ static void answer(FlightLoop *l, const LoopCamera *c, int frame)
 
 static void fly(FlightLoop *l, const Engagement *e)
 {
-    const LoopScene scene = {NULL, no_ground};
+    const LoopScene scene = {.ground_at = no_ground};
     for (int tick = 195, frame = 0; !l->ended && tick < 12000; tick++) {
         const double t_s = tick / 100.0;
         double       target[3];
@@ -180,7 +180,7 @@ static void answers_are_taken_or_refused(void **state)
     double        target[3];
     l->limit_s = l->start_s = 0.03;
     target_at(target, &e, 2);
-    flight_loop_tick(l, &(LoopScene){NULL, no_ground}, 2, target);
+    flight_loop_tick(l, &(LoopScene){.ground_at = no_ground}, 2, target);
     for (int frame = 0; frame < 3; frame++) {
         look(&l->eye, l, &e, 2);
         l->eye.t_s = 2 + 0.1 * frame;

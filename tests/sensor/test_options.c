@@ -11,6 +11,8 @@ enum { line_max = 40 };
 static const char *const samples[][2] = {
     {"port", "3001"},
     {"cigi", "127.0.0.1:8004"},
+    {"fly", "ir_ag"},
+    {"sight", "radar"},
     {"out", "elsewhere"},
     {"bands", "lwir"},
     {"size", "64x48"},

@@ -45,7 +45,8 @@ refused "options without frames" 2 'with --frames DIR or --recogniser' "$s" -- -
 refused "a wait for no answers" 2 'with --recogniser COMMAND' "$s" --frames "$tmp/x" --limit 3
 refused "no time" 2 'limit.*seconds above 0' "$s" --frames "$tmp/x" --limit -1
 refused "a missile without a seeker" 1 'has no seeker' "$s" --frames "$tmp/x" --set shots.Missile.flies=wire_at
-refused "two shots" 1 '2 shots fly' "$s" --frames "$tmp/x" --set shots.Missile.rounds=2
+refused "a gimbal of its own" 1 "gimbal_lag_s.*leave it out" "$s" --frames "$tmp/x" -- --set sensor.gimbal_lag_s=0.2
+refused "a mount" 1 "sensor.mount_yaw_deg.*leave it out" "$s" --frames "$tmp/x" -- --set sensor.mount_yaw_deg=3
 refused "another host" 1 'missile is the host' "$s" --frames "$tmp/x" -- --speed 2
 refused "no such sights" 1 'none.csv' "$s" --sights "$tmp/none.csv"
 printf 'frame,sight,column_px,row_px\n10,seen,,\n' >"$tmp/poor.csv"

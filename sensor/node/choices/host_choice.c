@@ -154,6 +154,12 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
         choice_add(choices, "aim: %s (exercise.aim)", who(name, survey, plan.aim));
         return STATUS_OK;
     }
+    if (*config->flight.missile) {
+        choice_add(choices, "host: a missile of the node's own, %s, from %s (flight.missile, flight.from)",
+                   config->flight.missile, config->flight.from);
+        choice_add(choices, "aim: %s (exercise.aim)", who(name, survey, plan.aim));
+        return STATUS_OK;
+    }
     if (asked) choice_add(choices, "host: a stand-off observer (exercise.host)");
     else
         choice_add(choices, "host: a stand-off observer, no munition flies here%s (exercise.host)",
@@ -312,7 +318,7 @@ Status choice_host(HostPlan *out, Choices *choices, const Survey *survey, const 
     Status      status = aim_is_known(survey, config);
     if (status != STATUS_OK) return status;
     if (strcmp(config->exercise.host, host_munition) == 0) return plan_munitions(out, choices, survey, config);
-    if (*config->exercise.cigi || strcmp(config->exercise.host, host_observer) == 0)
+    if (*config->exercise.cigi || *config->flight.missile || strcmp(config->exercise.host, host_observer) == 0)
         return plan_observer(out, choices, survey, config, true);
     if (*config->exercise.host) {
         if (!dis_entity_id_parse(&host, config->exercise.host) || dis_entity_id_is_none(host)) {
@@ -339,6 +345,7 @@ void choice_rate(HostPlan *plan, Choices *choices, const Config *config)
 {
     plan->rate_hz = config->sensor.rate_hz;
     if (plan->rate_hz > 0) return;
-    plan->rate_hz = plan->munition ? 5 : 1; /* a flight lasts seconds, an observation minutes */
+    /* a flight lasts seconds, an observation minutes; what steers by its frames needs more of them */
+    plan->rate_hz = *config->flight.missile ? 20 : plan->munition ? 5 : 1;
     if (!*config->exercise.cigi) choice_add(choices, "rate: %g frames a second (sensor.rate_hz)", plan->rate_hz);
 }

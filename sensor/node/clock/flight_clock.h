@@ -11,6 +11,10 @@ typedef struct FlightClock {
     FlightLoop *loop; /* the caller's */
     FrameGrid   grid;
     int         next;
+    /* The missile has ended; t_s: of the next frame, before which no other can be launched. False: there is no further
+     * one, or it failed. NULL: there is none. */
+    bool (*hand_over)(void *user, double t_s);
+    void *user;
 } FlightClock;
 
 FlightClock flight_clock(FlightLoop *loop);

@@ -12,6 +12,7 @@ Status flight_loop_begin(FlightLoop *l)
     l->miss = miss_begin();
     l->filter = sight_filter(l->memory);
     l->settled = -1;
+    l->least_from_s = -INFINITY;
     for (int i = 0; i < loop_waiting_most; i++) l->inbox[i].frame = -1;
     if (pthread_mutex_init(&l->lock, NULL) != 0) return STATUS_NO_MEMORY;
     pthread_condattr_init(&how);
@@ -27,6 +28,24 @@ void flight_loop_free(FlightLoop *l)
     free(l->row);
     pthread_cond_destroy(&l->arrived);
     pthread_mutex_destroy(&l->lock);
+}
+
+void flight_loop_next(FlightLoop *l)
+{
+    static const FlightState at_rest;
+    pthread_mutex_lock(&l->lock);
+    if (l->count > 0) l->settled = l->waiting[(l->first + l->count - 1) % loop_waiting_most].number;
+    pthread_mutex_unlock(&l->lock);
+    l->launched = l->ended = l->hit = l->target_known = false;
+    l->state = at_rest;
+    l->miss = miss_begin();
+    l->most_lateral_mps2 = 0;
+    l->guided = l->coasted = 0;
+    l->track_count = l->frames = l->first = l->count = 0;
+    l->usable_count = 0;
+    l->filter = sight_filter(l->memory);
+    memset(l->verdicts, 0, sizeof l->verdicts);
+    l->late = 0;
 }
 
 /* One step of 1 ms by the sight that guides then. False: it left what is computed. */
@@ -116,8 +135,12 @@ static void launch(FlightLoop *l, const double *target_ecef)
 
 void flight_loop_tick(FlightLoop *l, const LoopScene *scene, double t_s, const double target_ecef[3])
 {
-    const int64_t tick = llround(t_s / l->world.step_s), from = tick - loop_tick_ms;
-    if (!l->launched && l->launch_tick <= tick) launch(l, target_ecef);
+    const int64_t      tick = llround(t_s / l->world.step_s), from = tick - loop_tick_ms;
+    const FlightHooks *hooks = l->hooks;
+    if (hooks && hooks->before) hooks->before(hooks->user, t_s);
+    if (!l->launched && l->launch_tick <= tick &&
+        (!hooks || !hooks->launch || hooks->launch(hooks->user, scene, t_s, target_ecef)))
+        launch(l, target_ecef);
     while (l->launched && !l->ended && l->state.tick < tick) {
         const FlightState before = l->state;
         FlightVerdict     verdict;
@@ -139,4 +162,5 @@ void flight_loop_tick(FlightLoop *l, const LoopScene *scene, double t_s, const d
     }
     l->target_known = target_ecef != NULL;
     if (target_ecef) memcpy(l->target_ecef, target_ecef, sizeof l->target_ecef);
+    if (hooks && hooks->flown && l->launched) hooks->flown(hooks->user, scene, t_s);
 }

@@ -95,9 +95,15 @@ static LoopVerdict choose(double px[2], const FlightLoop *l, const LoopCamera *c
     return LOOP_SEEN;
 }
 
+void loop_push(FlightLoop *l, const LoopUsable *usable)
+{
+    l->usable[l->usable_count++ % loop_waiting_most] = *usable;
+    if (l->hooks && l->hooks->sight) l->hooks->sight(l->hooks->user, usable);
+}
+
 static void push(FlightLoop *l, const FlightSight *sight)
 {
-    l->usable[l->usable_count++ % loop_waiting_most] = (LoopUsable){sight->t_s + l->late_s, *sight};
+    loop_push(l, &(LoopUsable){fmax(sight->t_s + l->late_s, l->least_from_s), *sight});
 }
 
 const FlightSight *loop_sights_at(const FlightLoop *l, double t_s)
@@ -118,6 +124,16 @@ static void guide(FlightLoop *l, const LoopCamera *c, const double px[2])
     if (!sight_filter_take(&l->filter, c->t_s, los)) return;
     sight_filter_sight(&sight, &l->filter, c->p_ecef, c->v_ecef_mps);
     push(l, &sight);
+}
+
+bool loop_sights_direct(FlightLoop *l, const double los_ecef[3], double range_m, double closing_mps)
+{
+    FlightSight sight;
+    if (!sight_filter_take(&l->filter, l->eye.t_s, los_ecef)) return false;
+    sight_filter_sight(&sight, &l->filter, l->eye.p_ecef, l->eye.v_ecef_mps);
+    if (isfinite(range_m) && isfinite(closing_mps)) sight.range_m = range_m, sight.closing_mps = closing_mps;
+    push(l, &sight);
+    return true;
 }
 
 static void guide_truly(FlightLoop *l, const LoopCamera *c)
@@ -216,13 +232,61 @@ bool loop_sights_settle(FlightLoop *l, double t_s)
     return true;
 }
 
+/* Where of the waiting frames the newest is that is answered; -1: none is. */
+static int newest_answered(FlightLoop *l)
+{
+    int newest = -1;
+    pthread_mutex_lock(&l->lock);
+    for (int i = 0; i < l->count; i++)
+        if (answer_to(l, l->waiting[(l->first + i) % loop_waiting_most].number)) newest = i;
+    pthread_mutex_unlock(&l->lock);
+    return newest;
+}
+
+void loop_sights_arrived(FlightLoop *l, double t_s)
+{
+    static const double longest_s = 1;
+    int                 answered = newest_answered(l);
+    l->least_from_s = t_s;
+    for (; l->count > 0; answered--) {
+        const LoopFrame f = l->waiting[l->first];
+        double          px[2] = {NAN, NAN};
+        LoopVerdict     verdict = LOOP_NONE;
+        if (answered < 0 && t_s - f.camera.t_s <= longest_s && l->count < loop_waiting_most - 1) break;
+        pthread_mutex_lock(&l->lock);
+        const LoopAnswer *a = answer_to(l, f.number);
+        if (a) verdict = choose(px, l, &f.camera, a);
+        l->settled = f.number;
+        pthread_mutex_unlock(&l->lock);
+        settle(l, &f, verdict, px);
+    }
+    l->least_from_s = -INFINITY;
+}
+
+/* The strongest within a sixth of the image's width about where the target is expected. */
+void loop_sights_echoes(FlightLoop *l, const LoopEcho *echo, int count)
+{
+    const LoopCamera *c = &l->eye;
+    const double      gate = cos(atan(gate_widths * c->view.width / c->view.focal_px));
+    double            d[3], los[3];
+    int               best = -1;
+    expected(d, l, c);
+    for (int i = 0; i < count; i++) {
+        m3_mul_v3(los, c->r_ecef_from_cam, echo[i].d_cam);
+        if (v3_dot(los, d) >= gate && (best < 0 || echo[i].snr > echo[best].snr)) best = i;
+    }
+    const LoopVerdict verdict = count == 0 ? LOOP_EMPTY : best < 0 ? LOOP_OUTSIDE : LOOP_SEEN;
+    l->verdicts[verdict]++;
+    if (best < 0) return;
+    m3_mul_v3(los, c->r_ecef_from_cam, echo[best].d_cam);
+    if (v3_normalize(los, los)) loop_sights_direct(l, los, echo[best].range_m, echo[best].closing_mps);
+}
+
 void loop_sights_frame(FlightLoop *l, int number)
 {
     l->frames++;
-    if (l->source == LOOP_TRUE) {
-        guide_truly(l, &l->eye);
-        return;
-    }
+    if (l->source == LOOP_TRUE) guide_truly(l, &l->eye);
+    if (l->source != LOOP_ANSWERS && l->source != LOOP_RECORDED) return;
     if (l->count == loop_waiting_most) { /* cannot be: flight_clock_begin has asked for fewer */
         const LoopFrame oldest = l->waiting[l->first];
         settle(l, &oldest, LOOP_NONE, NULL);

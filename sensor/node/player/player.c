@@ -8,6 +8,7 @@
 #include "dis/capture/log.h"
 #include "sensor/node/player/munitions.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 typedef enum Where { IN_LOG, ON_DISK, KEPT } Where;
@@ -36,6 +37,7 @@ struct Player {
     double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
     double         fed_s;           /* counts_s of the newest event fed */
     double         now_s;           /* until which it was fed */
+    double         skip_s;          /* what counts until then was fed from a log before */
     DisCounters    counters;
     DisPdu         pdu; /* the PDU being fed */
     Munitions      munitions;
@@ -51,7 +53,7 @@ Status player_create(Player **out, int exercise, bool causal)
     player->tie_s = NAN;
     player->latest_s = -INFINITY;
     player->fed_s = -INFINITY;
-    player->now_s = -INFINITY;
+    player->now_s = player->skip_s = -INFINITY;
     const Status status = exercise_clock_create(&player->clock);
     if (status == STATUS_OK) *out = player;
     else player_destroy(player);
@@ -172,6 +174,21 @@ Status player_add_log(Player *player, const DisLog *log)
     return status;
 }
 
+Status player_change_log(Player *player, const DisLog *log, double from_s)
+{
+    ExerciseClock *clock = NULL;
+    Status         status = exercise_clock_create(&clock);
+    assert(!player->causal);
+    if (status != STATUS_OK) return status;
+    exercise_clock_destroy(player->clock);
+    player->clock = clock;
+    player->count = player->next = 0;
+    player->whole = false;
+    player->counters = (DisCounters){0};
+    player->skip_s = from_s;
+    return player_add_log(player, log);
+}
+
 /* ---- output ------------------------------------------------------------------------------------- */
 
 static int compare_events(const void *a, const void *b)
@@ -226,6 +243,7 @@ Status player_feed(Player *player, EntityTable *table, double t_s)
         qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
     player->sorted = true; /* arrivals are ordered already */
     player->now_s = fmax(player->now_s, t_s);
+    while (player->next < player->count && player->event[player->next].counts_s <= player->skip_s) player->next++;
     for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++) {
         feed_event(player, table, &player->event[player->next]);
         player->fed_s = player->event[player->next].counts_s;

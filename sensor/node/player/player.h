@@ -23,6 +23,10 @@ Status player_add(Player *player, const DisDatagram *datagram, bool keep);
  * disk when it is fed. */
 Status player_add_log(Player *player, const DisLog *log);
 
+/* By stamp: from now on that log, in place of the one before, of which it differs only after from_s, in what counts
+ * later. It must outlive the player, as the one before. */
+Status player_change_log(Player *player, const DisLog *log, double from_s);
+
 /* Feeds everything that counts at or before t_s and was not fed before. Timed-out entities are removed by the
  * caller, on a time grid of its own: so the table does not depend on which frames are rendered. Fails for want of
  * memory, before it feeds anything. */

@@ -67,6 +67,8 @@ Status run_prepare(Run *run)
             options_command(&run->options));
         return STATUS_BAD_VALUE;
     }
+    const Status flies = run_check_flight(run);
+    if (flies != STATUS_OK) return flies;
     Status status = config_own_tables(&run->options.config);
     if (status != STATUS_OK) return status;
     status = quality_choose(&run->options.config, &run->choices, run->bands);
@@ -352,6 +354,7 @@ Status run_host(Run *run, const DisEntityId *host)
     SessionResult  result = {0};
     Player        *player = NULL;
     Session       *session = NULL;
+    NodeFlight    *flight = NULL;
     char           out[run_folder_size], host_text[dis_id_text_size];
 
     if (host) {
@@ -364,12 +367,15 @@ Status run_host(Run *run, const DisEntityId *host)
     if (status != STATUS_OK) goto done;
     open_span(&chosen.plan, run, player);
     run_folder(out, o, chosen.plan.host);
-    const DisOf         dis = {.config = &o->config,
-                               .bands = run->bands,
-                               .version = run->first.version,
-                               .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
-                               .send = run->send,
-                               .user = run->user};
+    const DisOf dis = {.config = &o->config,
+                       .bands = run->bands,
+                       .version = run->first.version,
+                       .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
+                       .send = run->send,
+                       .user = run->user};
+    status = run_open_flight(&flight, run, player, out, &chosen.plan);
+    if (status != STATUS_OK) goto done;
+    if (flight) run->flight = node_flight_loop(flight);
     const SessionShared shared = {.config = &o->config,
                                   .survey = &made->survey,
                                   .catalog = made->catalog,
@@ -406,6 +412,10 @@ Status run_host(Run *run, const DisEntityId *host)
     snprintf(host_text, sizeof host_text, "%s", session_host(session));
     const Status closed = session_close(session, &result);
     if (status == STATUS_OK) status = closed;
+    const Status landed = node_flight_close(flight);
+    if (status == STATUS_OK) status = landed;
+    if (flight) run->flight = NULL;
+    flight = NULL;
     if (run->live) {
         run->live->files_failed = (uint64_t)result.files_failed;
         run->live->files_left_out = (uint64_t)result.files_left_out;
@@ -425,6 +435,7 @@ Status run_host(Run *run, const DisEntityId *host)
     }
 
 done:
+    node_flight_close(flight);
     session_result_free(&result);
     player_destroy(player);
     return status;

@@ -40,7 +40,8 @@ struct Run {
     void (*note)(void *user, const char *text);             /* into the recording; may be NULL */
     unsigned (*choose)(void *user, const FrameTime *frame); /* SessionShared.choose; may be NULL */
     DisSend           *send;   /* sends the Data PDUs of publish.dis; NULL: they are not sent */
-    void              *user;   /* passed to these five */
+    DisSend           *report; /* sends what a missile of the node's own (flight.missile) says; NULL: it is not sent */
+    void              *user;   /* passed to these six */
     FrameClock        *clock;  /* the command's, of `frames`; NULL where none are made */
     struct CigiNode   *cigi;   /* SessionShared.cigi; the command's */
     struct FlightLoop *flight; /* SessionShared.flight; likewise */

@@ -92,7 +92,9 @@ static void begin_latency(Session *s, Frame *f)
 
 Status session_frame(bool *shown, Session *s, const FrameTime *at)
 {
-    int left_out = 0;
+    const FlightLoop *loop = s->shared->flight;
+    int               left_out = 0;
+    if (loop && loop->hooks && loop->hooks->boundary) loop->hooks->boundary(loop->hooks->user, at->t_s);
     session_advance(s, at->t_s);
     session_prepare(s, at->t_s);
     Status status = s->advance_status;
@@ -100,6 +102,7 @@ Status session_frame(bool *shown, Session *s, const FrameTime *at)
     if (status == STATUS_OK && s->host->is_there(s->host)) { /* otherwise nothing is extrapolated for it */
         Frame *frame = frame_pool_take(s->frames);
         status = session_make_frame(shown, &left_out, frame, s, at);
+        if (status == STATUS_OK && *shown && loop) session_flight_seen(s, frame);
         if (status == STATUS_OK && *shown) {
             begin_latency(s, frame);
             status = consumers_put(&s->consumers, frame);
@@ -123,6 +126,7 @@ uint64_t             session_lost(char out[latency_lost_size], const Session *s)
     *out = 0;
     return s->latency ? latency_lost(out, s->latency) : 0;
 }
+bool        session_flight_over(const Session *s) { return s->shared->flight && s->shared->flight->over; }
 const char *session_host(const Session *s) { return s->host_text; }
 
 /* Frames that lack files: of the kind that lacks most, since a frame that lacks several counts once. */

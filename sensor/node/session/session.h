@@ -95,6 +95,8 @@ typedef struct SessionReady {
     int entities, models, signatures, waiting;
 } SessionReady;
 SessionReady session_ready(const Session *session);
+/* Whether it has a missile, and the last of its salvo has ended. */
+bool session_flight_over(const Session *session);
 /* Frames that consumers were not given so far, as latency_lost. */
 uint64_t    session_lost(char out[latency_lost_size], const Session *session);
 const char *session_host(const Session *session); /* id as text, `observer`, or `munition` while there is none */

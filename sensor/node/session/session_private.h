@@ -105,6 +105,8 @@ Status session_host_entity(HostMotion **out, Session *s);
 Status session_host_observer(HostMotion **out, Session *s);
 /* A missile that flies by what is seen in its own frames (sensor/node/flight/flight_loop.h). */
 Status session_host_flight(HostMotion **out, Session *s);
+/* Its loop has the frame that was made, with what its radar detected. */
+void session_flight_seen(Session *s, const Frame *frame);
 /* As a CIGI host says. */
 Status session_host_cigi(HostMotion **out, Session *s);
 

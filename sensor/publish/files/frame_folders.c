@@ -172,8 +172,8 @@ static const char *const marks[] = {"run.json", "truth.jsonl"};
 
 void frame_files_clear(const char *out)
 {
-    static const char *const beside[] = {"pairs",         "pairs.jsonl", "coco.json",
-                                         "answers.jsonl", "score.json",  "score.html"};
+    static const char *const beside[] = {"pairs",      "pairs.jsonl", "coco.json",  "answers.jsonl",
+                                         "score.json", "score.html",  "flight.csv", "flight.pcapng"};
     char                     path[path_size];
     bool                     earlier = !too_long(out) && frame_files_earlier(path, out);
     if (too_long(out)) return;
@@ -210,7 +210,8 @@ static bool blocked(const char *out, const char *name, unsigned how)
 
 Status frame_files_check(const char *out)
 {
-    static const char *const        files[] = {"run.json", "truth.jsonl", "coco.json", "pairs.jsonl", "answers.jsonl"},
+    static const char *const        files[] = {"run.json",      "truth.jsonl", "coco.json",    "pairs.jsonl",
+                                               "answers.jsonl", "flight.csv",  "flight.pcapng"},
                              *const folders[] = {"frames", "profiles", "raw", "radar", "latest", "pairs"};
     bool                            bad = too_long(out);
     char                            path[path_size], name[64];
