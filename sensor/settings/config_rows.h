@@ -166,7 +166,9 @@ enum { config_paths_size = 4096 };
     ROW(TEXT, exercise., cigi, "", 72, "", \
         "HOST:PORT of a CIGI 3.3 host, numeric, that gives each frame's time and eye, and waits for it; empty: none") \
     ROW(INT, exercise., cigi_port, 8005, 1, 65535, "", "UDP port on which that host is listened to") \
-    ROW(INT, exercise., cigi_view, 0, 0, 65535, "", "view of that host that is the eye")
+    ROW(INT, exercise., cigi_view, 0, 0, 65535, "", "view of that host that is the eye") \
+    ROW(PATH, exercise., cigi_types, "", 1024, \
+        "table from that host's entity types to entity types and forces; empty: cigi_types.csv")
 
 #define CONFIG_NETWORK(ROW) \
     ROW(TEXT, network., address, "", 64, "", \

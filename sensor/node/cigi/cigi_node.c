@@ -9,12 +9,16 @@ Status cigi_node_open(CigiNode **out, const Config *config)
     const CigiSessionConfig session = cigi_session_default_config();
     CigiNode               *node = calloc(1, sizeof *node);
     if (!node) return STATUS_NO_MEMORY;
-    const Status status = cigi_link_open(&node->link, config->exercise.cigi, config->exercise.cigi_port);
+    Status status = cigi_types_read(&node->drawn.types, config->exercise.cigi_types);
+    if (status == STATUS_OK) status = cigi_link_open(&node->link, config->exercise.cigi, config->exercise.cigi_port);
     if (status != STATUS_OK) {
         cigi_node_close(node);
         return status;
     }
     node->view = (uint16_t)config->exercise.cigi_view;
+    node->drawn.site = (uint16_t)config->node.site;
+    node->drawn.application = (uint16_t)config->node.application;
+    node->drawn.by_arrival = config->exercise.causal;
     node->hfov_deg = config->sensor.hfov_deg;
     cigi_session_begin(&node->session, &session, wall_clock_s());
     log_info("cigi: in step with the host at %s; it is listened to on port %d, and has the eye (view %d)",
@@ -42,6 +46,10 @@ static void say_counted(const CigiNode *node)
                      i);
     if (node->scene.refused)
         log_warn("cigi: %" PRIu64 " entities and views are out of range, or too many", node->scene.refused);
+    if (node->drawn.unmapped)
+        log_warn("cigi: %" PRIu64 " entities have a type that the table of types has not, and are not drawn "
+                 "(exercise.cigi_types)",
+                 node->drawn.unmapped);
     if (node->requests_lost + e->unanswered)
         log_warn("cigi: %" PRIu64 " requests did not fit into a frame (%d), or its answers into a datagram",
                  node->requests_lost + e->unanswered, cigi_requests_most);
@@ -216,6 +224,7 @@ bool cigi_node_fix(CigiNode *node, double t_s)
         once(&node->unseen, "the host has not said where the eye is: Entity Control of the entity that its view is on");
         return false;
     }
+    fix.rated = cigi_scene_view_rates(fix.v_ecef_mps, fix.w_ecef_rps, &node->scene, node->view);
     node->fix[1] = node->fix[0];
     node->fix[0] = fix;
     node->fixes = node->fixes < 2 ? node->fixes + 1 : 2;

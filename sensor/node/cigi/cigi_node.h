@@ -5,12 +5,15 @@
 #include "dis/cigi/cigi_link.h"
 #include "dis/cigi/cigi_session.h"
 #include "sensor/node/cigi/cigi_answer.h"
+#include "sensor/node/cigi/cigi_drawn.h"
 #include "sensor/settings/config.h"
 
 /* Where the eye was at a frame of the host. */
 typedef struct CigiFix {
     double t_s; /* exercise time */
     double p_ecef[3], r_ecef_from_view[9];
+    bool   rated; /* whether the host says the following */
+    double v_ecef_mps[3], w_ecef_rps[3];
 } CigiFix;
 
 enum { cigi_requests_most = 64 };
@@ -25,6 +28,7 @@ typedef struct CigiNode {
     CigiLink    *link;
     CigiSession  session;
     CigiScene    scene;
+    CigiDrawn    drawn;
     uint16_t     view;
     double       hfov_deg; /* the sensor's */
     double       asked_s;  /* wall_clock_s of the first Start of Frame; 0: not yet */
