@@ -112,5 +112,18 @@ void cigi_link_send(CigiLink *link, const uint8_t *datagram, size_t octets)
     link->unsent += sent != (ssize_t)octets;
 }
 
+void cigi_link_host(uint8_t address[16], uint16_t *port, const CigiLink *link)
+{
+    static const uint8_t mapped[12] = {[10] = 0xFF, [11] = 0xFF};
+    const bool           v6 = link->host.any.sa_family == AF_INET6;
+    if (v6) {
+        memcpy(address, &link->host.v6.sin6_addr, 16);
+    } else {
+        memcpy(address, mapped, sizeof mapped);
+        memcpy(address + sizeof mapped, &link->host.v4.sin_addr, 4);
+    }
+    *port = ntohs(v6 ? link->host.v6.sin6_port : link->host.v4.sin_port);
+}
+
 uint64_t cigi_link_foreign(const CigiLink *link) { return link->foreign; }
 uint64_t cigi_link_unsent(const CigiLink *link) { return link->unsent; }

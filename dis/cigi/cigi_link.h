@@ -16,7 +16,9 @@ void   cigi_link_close(CigiLink *link); /* accepts NULL */
  * none came. The octets are the link's until the next call. */
 bool cigi_link_receive(const uint8_t **datagram, size_t *octets, CigiLink *link, double wait_s);
 /* What cannot be sent is lost, as on the network, and counted. */
-void     cigi_link_send(CigiLink *link, const uint8_t *datagram, size_t octets);
+void cigi_link_send(CigiLink *link, const uint8_t *datagram, size_t octets);
+/* Address and port that Start of Frame goes to; IPv4 as ::ffff:a.b.c.d. */
+void     cigi_link_host(uint8_t address[16], uint16_t *port, const CigiLink *link);
 uint64_t cigi_link_foreign(const CigiLink *link);
 uint64_t cigi_link_unsent(const CigiLink *link);
 

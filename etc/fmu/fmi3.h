@@ -67,8 +67,9 @@ FMI3_VALUES(String, fmi3String);
 #define FMI3_REFUSED(X)                                                                                                \
     X(GetBinary)                                                                                                       \
     X(SetBinary)                                                                                                       \
-    X(GetClock) X(SetClock) X(GetNumberOfVariableDependencies) X(GetVariableDependencies) X(GetFMUState)               \
-        X(SetFMUState) X(FreeFMUState) X(SerializedFMUStateSize) X(SerializeFMUState) X(DeserializeFMUState)           \
+    X(GetClock)                                                                                                        \
+    X(SetClock) X(GetNumberOfVariableDependencies) X(GetVariableDependencies) X(GetFMUState) X(SetFMUState)            \
+        X(FreeFMUState) X(SerializedFMUStateSize) X(SerializeFMUState) X(DeserializeFMUState)                          \
             X(GetDirectionalDerivative) X(GetAdjointDerivative) X(EnterConfigurationMode) X(ExitConfigurationMode)     \
                 X(GetIntervalDecimal) X(GetIntervalFraction) X(GetShiftDecimal) X(GetShiftFraction)                    \
                     X(SetIntervalDecimal) X(SetIntervalFraction) X(SetShiftDecimal) X(SetShiftFraction)                \

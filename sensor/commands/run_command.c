@@ -220,6 +220,14 @@ static void note(void *user, const char *text)
     live_recording_note(l->recording, dis_udp_now_ns(), text);
 }
 
+/* What a CIGI host says, into the recording. */
+static void record_host(void *user, const uint8_t from[16], uint16_t port, const uint8_t *bytes, size_t octets)
+{
+    const Live *l = user;
+    live_recording_add(l->recording, dis_udp_now_ns(), from, port, l->run.options.config.exercise.cigi_port, bytes,
+                       octets);
+}
+
 static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
 {
     const Live *l = user;
@@ -362,12 +370,18 @@ static Status open_files(Live *l)
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
     const bool radar = strcmp(config->radar.preset, "none") != 0, less = radar || config->quality.deadline;
+    if (*config->exercise.cigi && strcasecmp(output_ending(config->record.path), ".pcap") == 0)
+        log_warn(
+            "run: exercise.cigi: %s has no room for when the host's frames are (pcap): no replay has them; name it "
+            ".pcapng",
+            config->record.path);
     if (strcasecmp(output_ending(config->record.path), ".pcap") == 0)
         log_warn("run: %s has no room for %s%s%swhat the ground was made from (pcap): a replay makes that by the whole "
                  "recording%s; name it .pcapng",
                  config->record.path, less ? "which frames give up sampling (quality.deadline)" : "",
                  radar ? ", or are without radar" : "", less ? ", and for " : "",
                  less ? ", and has frames in all" : "");
+    lockstep_record(&l->lockstep, &(CigiTap){record_host, note, l});
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 
