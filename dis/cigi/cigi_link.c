@@ -48,6 +48,8 @@ bool cigi_link_address_good(const char *host_port)
     return parse(&address, host_port);
 }
 
+bool cigi_link_recorded(const char *host_port) { return strcmp(host_port, "recorded") == 0; }
+
 static socklen_t size_of(const Address *a) { return a->any.sa_family == AF_INET6 ? sizeof a->v6 : sizeof a->v4; }
 
 Status cigi_link_open(CigiLink **out, const char *host_port, int own_port)

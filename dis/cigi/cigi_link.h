@@ -8,6 +8,8 @@ typedef struct CigiLink CigiLink;
 
 /* `HOST:PORT`, where Start of Frame goes: a numeric IPv4 address, or IPv6 in brackets; a port in 1 .. 65535. */
 bool cigi_link_address_good(const char *host_port);
+/* `recorded` in place of an address: the host of the recording that is replayed. */
+bool cigi_link_recorded(const char *host_port);
 /* own_port: on which this program listens. STATUS_BAD_VALUE or STATUS_IO, logged with what to do next. */
 Status cigi_link_open(CigiLink **out, const char *host_port, int own_port);
 void   cigi_link_close(CigiLink *link); /* accepts NULL */

@@ -68,17 +68,17 @@ FMI3_VALUES(String, fmi3String);
     X(GetBinary)                                                                                                       \
     X(SetBinary)                                                                                                       \
     X(GetClock)                                                                                                        \
-    X(SetClock) X(GetNumberOfVariableDependencies) X(GetVariableDependencies) X(GetFMUState) X(SetFMUState)            \
-        X(FreeFMUState) X(SerializedFMUStateSize) X(SerializeFMUState) X(DeserializeFMUState)                          \
-            X(GetDirectionalDerivative) X(GetAdjointDerivative) X(EnterConfigurationMode) X(ExitConfigurationMode)     \
-                X(GetIntervalDecimal) X(GetIntervalFraction) X(GetShiftDecimal) X(GetShiftFraction)                    \
-                    X(SetIntervalDecimal) X(SetIntervalFraction) X(SetShiftDecimal) X(SetShiftFraction)                \
-                        X(EvaluateDiscreteStates) X(UpdateDiscreteStates) X(EnterEventMode) X(EnterStepMode)           \
-                            X(GetOutputDerivatives) X(EnterContinuousTimeMode) X(CompletedIntegratorStep) X(SetTime)   \
-                                X(SetContinuousStates) X(GetContinuousStateDerivatives) X(GetEventIndicators)          \
-                                    X(GetContinuousStates) X(GetNominalsOfContinuousStates)                            \
-                                        X(GetNumberOfEventIndicators) X(GetNumberOfContinuousStates)                   \
-                                            X(ActivateModelPartition)
+    X(SetClock)                                                                                                        \
+    X(GetNumberOfVariableDependencies)                                                                                 \
+    X(GetVariableDependencies) X(GetFMUState) X(SetFMUState) X(FreeFMUState) X(SerializedFMUStateSize)                 \
+        X(SerializeFMUState) X(DeserializeFMUState) X(GetDirectionalDerivative) X(GetAdjointDerivative)                \
+            X(EnterConfigurationMode) X(ExitConfigurationMode) X(GetIntervalDecimal) X(GetIntervalFraction)            \
+                X(GetShiftDecimal) X(GetShiftFraction) X(SetIntervalDecimal) X(SetIntervalFraction) X(SetShiftDecimal) \
+                    X(SetShiftFraction) X(EvaluateDiscreteStates) X(UpdateDiscreteStates) X(EnterEventMode)            \
+                        X(EnterStepMode) X(GetOutputDerivatives) X(EnterContinuousTimeMode) X(CompletedIntegratorStep) \
+                            X(SetTime) X(SetContinuousStates) X(GetContinuousStateDerivatives) X(GetEventIndicators)   \
+                                X(GetContinuousStates) X(GetNominalsOfContinuousStates) X(GetNumberOfEventIndicators)  \
+                                    X(GetNumberOfContinuousStates) X(ActivateModelPartition)
 #define FMI3_DECLARE(name) FMI3_API fmi3Status fmi3##name(fmi3Instance);
 FMI3_REFUSED(FMI3_DECLARE)
 

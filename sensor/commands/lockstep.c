@@ -52,10 +52,10 @@ Status lockstep_begin(Lockstep *out, Run *run, const LiveClock *live)
                                       : "--only");
         return STATUS_BAD_VALUE;
     }
-    const bool recorded = strcmp(o->config.exercise.cigi, cigi_recorded_word) == 0;
+    const bool recorded = cigi_link_recorded(o->config.exercise.cigi);
     if (live && recorded) {
-        log_error("run: exercise.cigi: %s is a host that `replay` has from its recording; a node has one at HOST:PORT",
-                  cigi_recorded_word);
+        log_error("run: exercise.cigi: `recorded` is a host that `replay` has from its recording; a node has one at "
+                  "HOST:PORT");
         return STATUS_BAD_VALUE;
     }
     if (recorded) run->options.config.exercise.causal = true; /* its times are those of arrival at the live node */

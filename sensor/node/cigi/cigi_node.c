@@ -10,7 +10,7 @@ Status cigi_node_open(CigiNode **out, const Config *config, const char *log)
     CigiNode               *node = calloc(1, sizeof *node);
     if (!node) return STATUS_NO_MEMORY;
     Status     status = cigi_types_read(&node->drawn.types, config->exercise.cigi_types);
-    const bool recorded = log && strcmp(config->exercise.cigi, cigi_recorded_word) == 0;
+    const bool recorded = log && cigi_link_recorded(config->exercise.cigi);
     node->port = config->exercise.cigi_port;
     if (status == STATUS_OK)
         status = recorded ? cigi_recorded_open(&node->recorded, log, node->port)

@@ -9,9 +9,6 @@
 
 #include "dis/capture/log.h"
 
-/* In place of an address, exercise.cigi: the host of the recording that is replayed. */
-#define cigi_recorded_word "recorded"
-
 typedef struct CigiTimeNote {
     uint64_t datagram; /* 1: the first of the host */
     double   offset_s; /* exercise time less the host's, from that one on */
