@@ -1,37 +1,37 @@
 /* etc/fmu/child.h: a program that is started, watched, and never left behind.
  *
- * Between it and this process stands a watcher, a process of its own without threads: it holds one end of a
- * lifeline. When child_stop says so, or the other end is closed because this process has ended in whatever way, the
- * watcher interrupts the program (SIGINT), kills it 5 s later if it is still there, and ends. The program is killed
- * with its watcher. */
+ * A thread of its own, the keeper, starts the program and waits for its end. The kernel terminates the program
+ * (SIGTERM) when that thread ends before it, which is when this process ends, in whatever way. child_stop interrupts
+ * the program (SIGINT), and kills it when it is still there 5 s later. */
 #ifndef PITVIPER_FMU_CHILD_H
 #define PITVIPER_FMU_CHILD_H
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/socket.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 typedef struct Child {
-    pid_t watcher;  /* 0: none */
-    int   lifeline; /* ends the program when it is closed */
-    int   ended;    /* readable when the program has ended: its status as of waitpid, an int */
-    int   log;      /* what the program says; -1: not to be read */
+    int       there; /* it was started; the following members are valid */
+    pthread_t keeper;
+    pid_t     program;
+    int       ended[2]; /* a pipe: the keeper writes the program's status as of waitpid, -1 when it is not known */
+    int       log;      /* what the program says */
+    /* for the keeper */
+    sem_t        started;
+    int          reason; /* errno; 0: it was started */
+    char *const *argument;
 } Child;
-
-static inline void child_close(int *file)
-{
-    if (*file >= 0) close(*file);
-    *file = -1;
-}
 
 /* The path of a program, as a shell finds it; false: there is none that can be started. */
 static inline int child_find(char *path, size_t size, const char *program)
@@ -45,92 +45,85 @@ static inline int child_find(char *path, size_t size, const char *program)
     return 0;
 }
 
-/* In a process that was forked from one that may have threads: only calls that are safe in signal handlers. */
-static inline void child_close_others(int a, int b, int c)
-{
-    for (int i = 3; i < 4096; i++) {
-        if (i == a || i == b || i == c) continue;
-        close(i);
-    }
-#ifdef SYS_close_range
-    if (a < 4096 && b < 4096 && c < 4096) syscall(SYS_close_range, 4096u, ~0u, 0u);
-#endif
-}
-
-static inline void child_signals_default(void)
+/* In the forked process, which has one thread of a process of many: only calls that are safe in signal handlers. */
+static inline void child_become(const Child *c, pid_t parent)
 {
     static const int all[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD, SIGQUIT};
-    sigset_t         none;
-    sigemptyset(&none);
+    const int        none = open("/dev/null", O_RDONLY);
+    sigset_t         nothing;
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent) _exit(127);
+    setpgid(0, 0); /* an interrupt of the terminal is the tool's */
+    sigemptyset(&nothing);
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) signal(all[i], SIG_DFL);
-    sigprocmask(SIG_SETMASK, &none, NULL);
+    sigprocmask(SIG_SETMASK, &nothing, NULL);
+    dup2(none, 0), dup2(c->log, 1), dup2(c->log, 2);
+    for (int i = 3; i < 4096; i++) close(i); /* the tool's, and other instances' */
+    execv(c->argument[0], c->argument);
+    _exit(127);
 }
 
-static inline void child_watch(pid_t program, int lifeline, int ended)
+static inline void *child_keep(void *of)
 {
-    enum { look_ms = 20, patience = 5000 / look_ms };
-    int           status, asked = 0;
-    struct pollfd line = {lifeline, POLLIN, 0};
-    signal(SIGPIPE, SIG_IGN);
-    while (waitpid(program, &status, WNOHANG) == 0) {
-        if (asked == 0 && poll(&line, 1, look_ms) > 0) kill(program, SIGINT), asked = 1;
-        if (asked == 0) continue;
-        poll(NULL, 0, look_ms);
-        if (asked++ == patience) kill(program, SIGKILL);
+    Child      *c = (Child *)of;
+    const pid_t parent = getpid();
+    int         status = -1;
+    pid_t       got;
+    c->program = fork();
+    if (c->program == 0) child_become(c, parent);
+    c->reason = c->program < 0 ? errno : 0;
+    const int lives = c->program > 0;
+    sem_post(&c->started);
+    while (lives && (got = waitpid(c->program, &status, 0)) < 0 && errno == EINTR) {
     }
-    if (write(ended, &status, sizeof status) < 0) _exit(1);
-    _exit(0);
+    if (lives && got < 0) status = -1; /* this process waits for no child: SIGCHLD is ignored */
+    if (lives && write(c->ended[1], &status, sizeof status) < 0) return NULL;
+    return NULL;
 }
 
-/* argument[0]: the program's path; NULL at the end. log: a path; empty: a file without a name, which child_last_words
- * reads. False: errno says why. */
-static inline int child_start(Child *out, char *const argument[], const char *log)
+static inline void child_forget(Child *c)
 {
-    int line[2] = {-1, -1}, end[2] = {-1, -1}, none = open("/dev/null", O_RDONLY | O_CLOEXEC);
-    *out = (Child){0, -1, -1, -1};
-    out->log = *log ? open(log, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)
-                    : open("/tmp", O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
-    if (none < 0 || out->log < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line) != 0 ||
-        pipe2(end, O_CLOEXEC) != 0)
-        goto fail;
-    out->watcher = fork();
-    if (out->watcher < 0) goto fail;
-    if (out->watcher == 0) {
-        setpgid(0, 0); /* an interrupt of the terminal is the tool's */
-        child_signals_default();
-        dup2(none, 0), dup2(out->log, 1), dup2(out->log, 2);
-        child_close_others(line[0], end[1], -1);
-        const pid_t watcher = getpid(), program = fork();
-        if (program == 0) {
-            prctl(PR_SET_PDEATHSIG, SIGKILL);
-            if (getppid() != watcher) _exit(127);
-            execv(argument[0], argument);
-            _exit(127);
-        }
-        if (program < 0) _exit(1);
-        child_watch(program, line[0], end[1]);
-    }
-    close(none), close(line[0]), close(end[1]);
-    out->lifeline = line[1], out->ended = end[0];
-    return 1;
+    for (int i = 0; i < 2; i++)
+        if (c->ended[i] >= 0) close(c->ended[i]);
+    if (c->log >= 0) close(c->log);
+    sem_destroy(&c->started);
+    c->there = 0;
+}
 
-fail:;
-    const int reason = errno;
-    child_close(&none), child_close(&line[0]), child_close(&line[1]), child_close(&end[0]), child_close(&end[1]);
-    child_close(&out->log);
-    out->watcher = 0;
+/* argument[0]: the program's path; NULL at the end. log: a path; empty: memory, which child_last_words reads. False:
+ * errno says why. */
+static inline int child_start(Child *c, char *const argument[], const char *log)
+{
+    sigset_t all, before;
+    *c = (Child){.ended = {-1, -1}, .argument = argument};
+    sem_init(&c->started, 0, 0);
+    c->log = *log ? open(log, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644) : memfd_create("pitviper", MFD_CLOEXEC);
+    c->reason = c->log < 0 || pipe2(c->ended, O_CLOEXEC) != 0 ? errno : 0;
+    sigfillset(&all); /* the tool's signals are for its own threads */
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    if (c->reason == 0) c->reason = pthread_create(&c->keeper, NULL, child_keep, c);
+    const int begun = c->reason == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    while (begun && sem_wait(&c->started) != 0) {
+    }
+    if (begun && c->reason != 0) pthread_join(c->keeper, NULL);
+    c->there = c->reason == 0;
+    if (c->there) return 1;
+    const int reason = c->reason;
+    child_forget(c);
     errno = reason;
     return 0;
 }
 
-/* Whether the program has ended, and how, in words. Its exit status: *code, or -1. */
+/* Whether the program has ended, and how, in words. Its exit status: *code, or -1. Once. */
 static inline int child_has_ended(char *how, size_t size, int *code, const Child *c)
 {
-    struct pollfd end = {c->ended, POLLIN, 0};
+    struct pollfd end = {c->ended[0], POLLIN, 0};
     int           status;
     *code = -1;
     if (poll(&end, 1, 0) <= 0) return 0;
-    if (read(c->ended, &status, sizeof status) != (ssize_t)sizeof status) snprintf(how, size, "with its watcher");
+    if (read(c->ended[0], &status, sizeof status) != (ssize_t)sizeof status || status == -1)
+        snprintf(how, size, "in a way that is not known");
     else if (WIFSIGNALED(status)) snprintf(how, size, "by signal %d", WTERMSIG(status));
     else snprintf(how, size, "with status %d", *code = WEXITSTATUS(status));
     return 1;
@@ -140,26 +133,43 @@ static inline int child_has_ended(char *how, size_t size, int *code, const Child
 static inline void child_last_words(char *out, size_t size, const Child *c)
 {
     const off_t end = lseek(c->log, 0, SEEK_END), from = end > (off_t)size - 1 ? end - (off_t)size + 1 : 0;
-    ssize_t     got = c->log >= 0 ? pread(c->log, out, size - 1, from) : 0;
+    ssize_t     got = pread(c->log, out, size - 1, from);
     out[got > 0 ? got : 0] = 0;
     while (got > 0 && (out[got - 1] == '\n' || out[got - 1] == ' ')) out[--got] = 0;
 }
 
-/* Ends the program, waits until it is gone, and frees what *c has. */
-static inline void child_stop(Child *c)
+static inline int child_ends_within(const Child *c, int ms)
 {
-    if (c->watcher <= 0) return;
-    send(c->lifeline, "", 1, MSG_NOSIGNAL); /* a process forked from this one may hold it, too */
-    child_close(&c->lifeline);
-    if (c->ended >= 0) { /* a tool that ignores SIGCHLD leaves nothing to wait for */
-        struct pollfd end = {c->ended, POLLIN, 0};
-        while (poll(&end, 1, 10000) < 0 && errno == EINTR) {
-        }
+    struct pollfd   end = {c->ended[0], POLLIN, 0};
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    const long long until_ms = now.tv_sec * 1000LL + now.tv_nsec / 1000000 + ms;
+    for (;;) {
+        const int got = poll(&end, 1, ms);
+        if (got >= 0 || errno != EINTR) return got != 0;
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        const long long left_ms = until_ms - (now.tv_sec * 1000LL + now.tv_nsec / 1000000);
+        ms = left_ms > 0 ? (int)left_ms : 0;
     }
-    while (waitpid(c->watcher, NULL, 0) < 0 && errno == EINTR) {
+}
+
+/* To it and what it has started in its group. */
+static inline void child_signal(const Child *c, int signal_number)
+{
+    if (kill(-c->program, signal_number) != 0) kill(c->program, signal_number);
+}
+
+/* Ends the program, waits until it is gone, and frees what *c has. ended: child_has_ended has said so. */
+static inline void child_stop(Child *c, int ended)
+{
+    enum { patience_ms = 5000 };
+    if (!c->there) return;
+    if (!ended && !child_ends_within(c, 0)) { /* it is there: the keeper has not waited for it */
+        child_signal(c, SIGINT);
+        if (!child_ends_within(c, patience_ms)) child_signal(c, SIGKILL);
     }
-    child_close(&c->ended), child_close(&c->log);
-    c->watcher = 0;
+    pthread_join(c->keeper, NULL);
+    child_forget(c);
 }
 
 #endif

@@ -70,10 +70,11 @@ FMI3_VALUES(String, fmi3String);
     X(GetClock)                                                                                                        \
     X(SetClock)                                                                                                        \
     X(GetNumberOfVariableDependencies)                                                                                 \
-    X(GetVariableDependencies) X(GetFMUState) X(SetFMUState) X(FreeFMUState) X(SerializedFMUStateSize)                 \
-        X(SerializeFMUState) X(DeserializeFMUState) X(GetDirectionalDerivative) X(GetAdjointDerivative)                \
-            X(EnterConfigurationMode) X(ExitConfigurationMode) X(GetIntervalDecimal) X(GetIntervalFraction)            \
-                X(GetShiftDecimal) X(GetShiftFraction) X(SetIntervalDecimal) X(SetIntervalFraction) X(SetShiftDecimal) \
+    X(GetVariableDependencies)                                                                                         \
+    X(GetFMUState) X(SetFMUState) X(FreeFMUState) X(SerializedFMUStateSize) X(SerializeFMUState)                       \
+        X(DeserializeFMUState) X(GetDirectionalDerivative) X(GetAdjointDerivative) X(EnterConfigurationMode)           \
+            X(ExitConfigurationMode) X(GetIntervalDecimal) X(GetIntervalFraction) X(GetShiftDecimal)                   \
+                X(GetShiftFraction) X(SetIntervalDecimal) X(SetIntervalFraction) X(SetShiftDecimal)                    \
                     X(SetShiftFraction) X(EvaluateDiscreteStates) X(UpdateDiscreteStates) X(EnterEventMode)            \
                         X(EnterStepMode) X(GetOutputDerivatives) X(EnterContinuousTimeMode) X(CompletedIntegratorStep) \
                             X(SetTime) X(SetContinuousStates) X(GetContinuousStateDerivatives) X(GetEventIndicators)   \

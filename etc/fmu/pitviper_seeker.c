@@ -2,6 +2,7 @@
  * place in shared memory out.
  *
  *     cc -O2 -fPIC -shared -fvisibility=hidden -I etc/include etc/fmu/pitviper_seeker.c -o pitviper_seeker.so -lm
+ * -pthread
  *
  * fmi3ExitInitializationMode starts `pitviper replay RECORDING` (or `run`) with this instance as its CIGI host, and
  * waits for its world. fmi3DoStep asks for the frame at the beginning of the step, with the inputs of that time, and
@@ -85,11 +86,12 @@ static void add_words(Arguments *a, const char *text)
     }
 }
 
-static void stop(Seeker *s)
+/* over: the program has ended. */
+static void stop(Seeker *s, bool over)
 {
     char path[160];
     if (s->frames_open) pitviper_memory_close(&s->frames);
-    child_stop(&s->child);
+    child_stop(&s->child, over);
     host_close(&s->host);
     if (*s->ring_name && snprintf(path, sizeof path, PITVIPER_MEMORY_FOLDER "/%s", s->ring_name) < (int)sizeof path)
         unlink(path); /* of a program that was killed */
@@ -139,12 +141,12 @@ static fmi3Status await(Seeker *s, double limit_s, int *code)
         const int64_t left_ns = until_ns - pitviper_memory_now_ns();
         if (child_has_ended(how, sizeof how, code, &s->child)) {
             child_last_words(words, sizeof words, &s->child);
-            stop(s);
+            stop(s, true);
             if (*code == 0) return fmi3Error;
             return say(s, fmi3Error, "pitviper ended %s; its last words:\n%s", how, words);
         }
         if (left_ns <= 0) return fmi3Discard;
-        struct pollfd what[2] = {{s->host.socket, POLLIN, 0}, {s->child.ended, POLLIN, 0}};
+        struct pollfd what[2] = {{s->host.socket, POLLIN, 0}, {s->child.ended[0], POLLIN, 0}};
         poll(what, 2, left_ns < 200000000 ? (int)(left_ns / 1000000) + 1 : 200);
     }
     return fmi3OK;
@@ -248,7 +250,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
 void fmi3FreeInstance(fmi3Instance of)
 {
     if (!of) return;
-    stop(of);
+    stop(of, false);
     free(of);
 }
 
@@ -283,14 +285,14 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance of)
     if (status == fmi3Discard)
         say(s, fmi3Error, "the world is not made within %g s: parameter `start_limit_s`", s->v.number[start_limit_s]);
     if (status == fmi3OK) s->phase = stepping;
-    else stop(s);
+    else stop(s, false);
     return status == fmi3OK ? fmi3OK : fmi3Error;
 }
 
 fmi3Status fmi3Terminate(fmi3Instance of)
 {
     if (!of) return fmi3Error;
-    stop(of);
+    stop(of, false);
     return fmi3OK;
 }
 
@@ -298,7 +300,7 @@ fmi3Status fmi3Reset(fmi3Instance of)
 {
     Seeker *const s = of;
     if (!s) return fmi3Error;
-    stop(s);
+    stop(s, false);
     set_start_values(&s->v);
     s->phase = instantiated;
     return fmi3OK;
