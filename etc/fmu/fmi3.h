@@ -62,25 +62,4 @@ FMI3_VALUES(UInt64, uint64_t);
 FMI3_VALUES(Boolean, bool);
 FMI3_VALUES(String, fmi3String);
 
-/* What this FMU has not: each returns fmi3Error, whatever its arguments, which are passed in registers and on the
- * stack by the caller, and are taken away by it (System V ABI of x86-64). */
-#define FMI3_REFUSED(X)                                                                                                \
-    X(GetBinary)                                                                                                       \
-    X(SetBinary)                                                                                                       \
-    X(GetClock)                                                                                                        \
-    X(SetClock)                                                                                                        \
-    X(GetNumberOfVariableDependencies)                                                                                 \
-    X(GetVariableDependencies)                                                                                         \
-    X(GetFMUState) X(SetFMUState) X(FreeFMUState) X(SerializedFMUStateSize) X(SerializeFMUState)                       \
-        X(DeserializeFMUState) X(GetDirectionalDerivative) X(GetAdjointDerivative) X(EnterConfigurationMode)           \
-            X(ExitConfigurationMode) X(GetIntervalDecimal) X(GetIntervalFraction) X(GetShiftDecimal)                   \
-                X(GetShiftFraction) X(SetIntervalDecimal) X(SetIntervalFraction) X(SetShiftDecimal)                    \
-                    X(SetShiftFraction) X(EvaluateDiscreteStates) X(UpdateDiscreteStates) X(EnterEventMode)            \
-                        X(EnterStepMode) X(GetOutputDerivatives) X(EnterContinuousTimeMode) X(CompletedIntegratorStep) \
-                            X(SetTime) X(SetContinuousStates) X(GetContinuousStateDerivatives) X(GetEventIndicators)   \
-                                X(GetContinuousStates) X(GetNominalsOfContinuousStates) X(GetNumberOfEventIndicators)  \
-                                    X(GetNumberOfContinuousStates) X(ActivateModelPartition)
-#define FMI3_DECLARE(name) FMI3_API fmi3Status fmi3##name(fmi3Instance);
-FMI3_REFUSED(FMI3_DECLARE)
-
 #endif

@@ -13,6 +13,7 @@
 #include "child.h"
 #include "fmi3.h"
 #include "host.h"
+#include "refused.h"
 #include "variables.h"
 
 #include <stdarg.h>
@@ -450,11 +451,3 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token
     (void)clock, (void)lock, (void)unlock;
     return NULL;
 }
-
-#define REFUSE(name)                                                                                                   \
-    fmi3Status fmi3##name(fmi3Instance instance)                                                                       \
-    {                                                                                                                  \
-        (void)instance;                                                                                                \
-        return fmi3Error;                                                                                              \
-    }
-FMI3_REFUSED(REFUSE)
