@@ -2,7 +2,9 @@
 
     describe               the description is valid, and the library has every function of FMI 3.0
     fly PITVIPER LOG OUT OPTIONS...     simulates a flight, and judges poses by pyproj and scipy, the lines of sight by
-                           truth.jsonl, and the places in the ring; writes what it said by CIGI to OUT.cigi
+                           truth.jsonl, and the places in the ring
+    live PITVIPER OUT OPTIONS...        the same through a live exercise
+    say FOLDER             writes what the FMU says in that flight by CIGI to FOLDER/said
     again CIGI PITVIPER LOG OUT OPTIONS...   the same datagrams from a host without FMU
     manners FOLDER         tools that behave otherwise, with fmu_ig.py in place of pitviper"""
 import ctypes
@@ -180,6 +182,20 @@ def fly(fmu, program, log, out, options):
     for k, line in enumerate(lines):
         judge_frame(k, line, dict(zip(result.dtype.names, result[k + 1])))
     expect('nothing is left in /dev/shm', not rings())
+
+
+def live(fmu, program, out, options):
+    """Through a live exercise, whose time is its own."""
+    signals = numpy.array([(k * STEP_S, *inputs(k, RATES)) for k in range(FRAMES + 1)],
+                          dtype=[('time', 'f8')] + [(n, 'f8') for n in NAMES])
+    result = simulate_fmu(fmu, start_time=0, stop_time=FRAMES * STEP_S, output_interval=STEP_S, input=signals, output=SHOWN,
+                          start_values=parameters(program, '', out, options))
+    lines = [json.loads(line) for line in open(f'{out}/truth.jsonl', encoding='utf-8')]
+    expect('as many frames as steps', len(lines) == FRAMES == len(result) - 1, len(lines), len(result))
+    for k, line in enumerate(lines):
+        expect(f'live frame {k}: its time', abs(line['time_s'] - lines[0]['time_s'] - k * STEP_S) < 1e-9
+               and abs(result['frame_time'][k + 1] - line['time_s']) < 1e-9, line['time_s'] - lines[0]['time_s'], result['frame_time'][k + 1], line['time_s'])
+        expect(f'live frame {k}: its place', numpy.abs(numpy.array(line['host']['ecef_m']) - pose(k)[0]).max() < 1e-6)
 
 
 # ---- the same by CIGI alone -----------------------------------------------------------------------
@@ -379,6 +395,8 @@ def main():
         describe(fmu)
     elif what == 'fly':
         fly(fmu, rest[0], rest[1], rest[2], rest[3:])
+    elif what == 'live':
+        live(fmu, rest[0], rest[1], rest[2:])
     elif what == 'say':
         say(fmu, rest[0])
     elif what == 'again':
