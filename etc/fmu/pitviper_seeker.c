@@ -120,7 +120,7 @@ static fmi3Status start(Seeker *s)
     add(&a, "--memory"), add(&a, "%s", s->ring_name);
     add(&a, "--set"), add(&a, "publish.memory_record=truth");
     if (*s->v.text[target - program]) add(&a, "--set"), add(&a, "exercise.aim=%s", s->v.text[target - program]);
-    add(&a, "--out"), add(&a, "%s", *out ? out : "pitviper-seeker");
+    add(&a, "--out"), add(&a, *out ? "%s" : "pitviper-%s", *out ? out : s->name);
     if (!*out) add(&a, "--overwrite");
     add_words(&a, s->v.text[options - program]);
     if (a.full) return say(s, fmi3Error, "parameter `options` has too many words");
@@ -242,6 +242,8 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
     Seeker *const s = calloc(1, sizeof *s);
     if (!s) return say(&unborn, fmi3Error, "out of memory"), NULL;
     snprintf(s->name, sizeof s->name, "%s", name ? name : "");
+    for (char *c = s->name; *c; c++) /* it names a folder */
+        if (!strchr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_", *c)) *c = '_';
     s->environment = environment, s->log = log, s->logs = logging;
     s->host.socket = -1;
     set_start_values(&s->v);

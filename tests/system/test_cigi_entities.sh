@@ -16,11 +16,16 @@ check "and said" complained 'exercise.cigi_types'
 check "with a table of its own" not fly "$tmp/two" --set exercise.cigi_types="$tmp/types.csv"
 check "that one is there, too" grep -q '"4711:1:21"' "$tmp/two/truth.jsonl"
 check "and is not counted" counted two '"unmapped":0'
+printf 'exercise:\n  cigi_types: types.csv\n' >"$tmp/node.yaml"
+run check "$tmp/node.yaml"
+check "a configuration with it is right" [ $code = 0 ]
 wrong() { # wrong WHAT ROW TEXT
     { cat etc/cigi_types.csv; echo "$2"; } >"$tmp/types.csv"
     run replay "$tmp/demo.pcap" --out "$tmp/not" --cigi 127.0.0.1:9 --set exercise.cigi_types="$tmp/types.csv"
     check "$1 is refused" [ $code != 0 ]
     check "$1: it says why" complained "$3"
+    run check "$tmp/node.yaml"
+    check "$1: check says it, too" complained 'exercise.cigi_types'
 }
 wrong "a type that is none" '50, tank, neutral, x' 'type'
 wrong "a number twice" '1, 1.1.222.7.1.0.0, neutral, x' 'number'

@@ -307,6 +307,7 @@ def manners(fmu, folder):
     expect('time that goes back', t.step(0) == 3)
     expect('and on', t.step(0.2) == 0)
     expect('a parameter is fixed now', status(t.seeker.setString, [t.seeker.vr['options']], ['x']) == 3)
+    expect('without rates no Rate Control', {len(line) for line in open(t.said, encoding='ascii').read().split('\n')[1:] if line} == {2 * (24 + 48 + 32)})
     expect('nothing of that was asked for', stamps(t.said) == [(1, begun), (2, begun), (3, begun + 5000), (4, begun + 20000)], stamps(t.said))
     pid = t.pid()
     t.free()  # without fmi3Terminate
