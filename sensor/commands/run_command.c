@@ -83,6 +83,8 @@ static bool take(DisDatagram *out, Live *l, int64_t until_ns)
 {
     DisArrival a;
     while (dis_udp_take(&a, l->udp, until_ns)) {
+        /* what arrived between the opening of the socket and that of the recording */
+        if (l->recording && a.capture_ns < live_recording_first_ns(l->recording)) continue;
         *out = (DisDatagram){.capture_s = dis_unix_s(a.capture_ns), .octets = a.octets, .bytes = a.bytes};
         out->packet_s = out->capture_s;
         if (player_own(out, &l->run.options.config)) {

@@ -13,12 +13,14 @@ struct LiveRecording {
     pthread_mutex_t lock; /* protects the following */
     DisRecorder    *recorder;
     uint64_t        failed;
+    int64_t         first_ns;
 };
 
 static void add(void *user, const DisArrival *a)
 {
     LiveRecording *r = user;
     pthread_mutex_lock(&r->lock);
+    if (r->first_ns == INT64_MAX) r->first_ns = a->capture_ns;
     r->failed += dis_recorder_add(r->recorder, a->capture_ns, a->from, a->from_port, a->bytes, a->octets) != STATUS_OK;
     pthread_mutex_unlock(&r->lock);
 }
@@ -27,6 +29,7 @@ Status live_recording_open(LiveRecording **out, const char *path, const char *co
 {
     LiveRecording *r = calloc(1, sizeof *r);
     if (!r) return STATUS_NO_MEMORY;
+    r->first_ns = INT64_MAX;
     const Status status = dis_recorder_open(&r->recorder, path, comment);
     if (status != STATUS_OK) {
         free(r);
@@ -68,6 +71,14 @@ void live_recording_flush(LiveRecording *r)
     pthread_mutex_lock(&r->lock);
     dis_recorder_flush(r->recorder);
     pthread_mutex_unlock(&r->lock);
+}
+
+int64_t live_recording_first_ns(LiveRecording *r)
+{
+    pthread_mutex_lock(&r->lock);
+    const int64_t first_ns = r->first_ns;
+    pthread_mutex_unlock(&r->lock);
+    return first_ns;
 }
 
 uint64_t live_recording_failed(LiveRecording *r)

@@ -14,6 +14,9 @@ void live_recording_add(LiveRecording *recording, int64_t unix_ns, const uint8_t
                         const uint8_t *bytes, size_t octets);
 /* dis_recorder_note, now. */
 Status live_recording_note(LiveRecording *recording, int64_t unix_ns, const char *text);
+/* Capture time of the first datagram of the exercise in it, Unix ns; INT64_MAX: there is none. Those that arrived
+ * before are not in it, and a node whose replay is to have the same frames does not use them. */
+int64_t live_recording_first_ns(LiveRecording *recording);
 /* Flushes to the operating system, so that the recording of a killed program is complete. NULL is valid, here and
  * below. */
 void live_recording_flush(LiveRecording *recording);
