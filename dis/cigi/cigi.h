@@ -13,6 +13,7 @@
 enum {
     cigi_ig_control = 1, /* host to IG */
     cigi_entity_control = 2,
+    cigi_rate_control = 8,
     cigi_view_control = 16,
     cigi_sensor_control = 17,
     cigi_view_definition = 21,
@@ -60,6 +61,13 @@ typedef struct CigiEntityControl {
     float    roll_deg, pitch_deg, yaw_deg;
     double   p[3]; /* latitude, longitude, degrees, and altitude, m; attached: offset from the parent, m, its axes */
 } CigiEntityControl;
+
+typedef struct CigiRateControl {
+    uint16_t entity;
+    uint8_t  part;
+    bool     of_part, local; /* local: in the entity's own axes, else in those of its place, or of its parent */
+    float    v_mps[3], roll_deg_s, pitch_deg_s, yaw_deg_s; /* v: forward, right, down, or north, east, down */
+} CigiRateControl;
 
 typedef struct CigiViewControl {
     uint16_t view;
@@ -188,6 +196,7 @@ typedef struct CigiPacket {
     union {
         CigiIgControl              ig_control;
         CigiEntityControl          entity_control;
+        CigiRateControl            rate_control;
         CigiViewControl            view_control;
         CigiSensorControl          sensor_control;
         CigiViewDefinition         view_definition;

@@ -53,6 +53,20 @@ static const CigiField entity_control[] = {
     WHOLE("altitude/z offset", CIGI_F64, 40, T, p[2]),
 };
 #undef T
+#define T CigiRateControl
+static const CigiField rate_control[] = {
+    WHOLE("entity id", CIGI_U16, 2, T, entity),
+    WHOLE("articulated part id", CIGI_U8, 4, T, part),
+    FLAG("apply to articulated part", 5, 0, T, of_part),
+    FLAG("coordinate system", 5, 1, T, local),
+    WHOLE("x linear rate", CIGI_F32, 8, T, v_mps[0]),
+    WHOLE("y linear rate", CIGI_F32, 12, T, v_mps[1]),
+    WHOLE("z linear rate", CIGI_F32, 16, T, v_mps[2]),
+    WHOLE("roll angular rate", CIGI_F32, 20, T, roll_deg_s),
+    WHOLE("pitch angular rate", CIGI_F32, 24, T, pitch_deg_s),
+    WHOLE("yaw angular rate", CIGI_F32, 28, T, yaw_deg_s),
+};
+#undef T
 #define T CigiViewControl
 static const CigiField view_control[] = {
     WHOLE("view id", CIGI_U16, 2, T, view),          WHOLE("group id", CIGI_U8, 4, T, group),
@@ -256,6 +270,7 @@ static const CigiField sensor_extended_response[] = {
 static const CigiLayout layouts[] = {
     LAYOUT("IG Control", cigi_ig_control, 24, ig_control),
     LAYOUT("Entity Control", cigi_entity_control, 48, entity_control),
+    LAYOUT("Rate Control", cigi_rate_control, 32, rate_control),
     LAYOUT("View Control", cigi_view_control, 32, view_control),
     LAYOUT("Sensor Control", cigi_sensor_control, 24, sensor_control),
     LAYOUT("View Definition", cigi_view_definition, 32, view_definition),

@@ -48,6 +48,8 @@ bool cigi_link_address_good(const char *host_port)
     return parse(&address, host_port);
 }
 
+bool cigi_link_recorded(const char *host_port) { return strcmp(host_port, "recorded") == 0; }
+
 static socklen_t size_of(const Address *a) { return a->any.sa_family == AF_INET6 ? sizeof a->v6 : sizeof a->v4; }
 
 Status cigi_link_open(CigiLink **out, const char *host_port, int own_port)
@@ -110,6 +112,19 @@ void cigi_link_send(CigiLink *link, const uint8_t *datagram, size_t octets)
 {
     const ssize_t sent = sendto(link->socket, datagram, octets, MSG_DONTWAIT, &link->host.any, size_of(&link->host));
     link->unsent += sent != (ssize_t)octets;
+}
+
+void cigi_link_host(uint8_t address[16], uint16_t *port, const CigiLink *link)
+{
+    static const uint8_t mapped[12] = {[10] = 0xFF, [11] = 0xFF};
+    const bool           v6 = link->host.any.sa_family == AF_INET6;
+    if (v6) {
+        memcpy(address, &link->host.v6.sin6_addr, 16);
+    } else {
+        memcpy(address, mapped, sizeof mapped);
+        memcpy(address + sizeof mapped, &link->host.v4.sin_addr, 4);
+    }
+    *port = ntohs(v6 ? link->host.v6.sin6_port : link->host.v4.sin_port);
 }
 
 uint64_t cigi_link_foreign(const CigiLink *link) { return link->foreign; }

@@ -1,6 +1,7 @@
 /* sensor/commands/check_command.c: `pitviper check`: validates configuration files and every table and model that
  * they lead to. */
 #include "sensor/commands/commands.h"
+#include "sensor/node/cigi/cigi_types.h"
 
 #include "entities/scenery/scenery_clutter.h"
 #include "entities/traces/effect_history.h"
@@ -264,11 +265,20 @@ static bool radar_is_valid(const Check *c)
     return true;
 }
 
+static bool cigi_is_valid(const Check *c)
+{
+    static CigiTypes types;
+    const char      *own = c->config->exercise.cigi_types;
+    return !*own || cigi_types_read(&types, own) == STATUS_OK ||
+           report(c, "exercise.cigi_types", "a .csv with the columns of etc/cigi_types.csv; that file describes them");
+}
+
 static bool tables_are_valid(Check *c)
 {
     bool good = models_are_valid(c);
     good &= sensors_are_valid(c);
     good &= radar_is_valid(c);
+    good &= cigi_is_valid(c);
     good &= atmosphere_is_valid(c);
     good &= weather_is_valid(c);
     good &= given_heat_is_valid(c);

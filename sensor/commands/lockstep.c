@@ -52,17 +52,26 @@ Status lockstep_begin(Lockstep *out, Run *run, const LiveClock *live)
                                       : "--only");
         return STATUS_BAD_VALUE;
     }
-    const Status status = cigi_node_open(&out->clock.node, &o->config);
+    const bool recorded = cigi_link_recorded(o->config.exercise.cigi);
+    if (live && recorded) {
+        log_error("run: exercise.cigi: `recorded` is a host that `replay` has from its recording; a node has one at "
+                  "HOST:PORT");
+        return STATUS_BAD_VALUE;
+    }
+    if (recorded) run->options.config.exercise.causal = true; /* its times are those of arrival at the live node */
+    const Status status = cigi_node_open(&out->clock.node, &o->config, live ? NULL : o->log);
     if (status != STATUS_OK) return status;
     run->cigi = out->clock.node;
     run->clock = &out->clock.clock;
-    if (live && *o->config.record.path)
-        log_warn("run: exercise.cigi: %s holds the exercise, and not what the host says: its replay has other frames",
-                 o->config.record.path);
     if (live) return STATUS_OK;
     run->frames = frames;
     run->check = NULL;
     return STATUS_OK;
+}
+
+void lockstep_record(Lockstep *lockstep, const CigiTap *tap)
+{
+    if (lockstep->clock.node) lockstep->clock.node->tap = *tap;
 }
 
 void lockstep_end(Lockstep *lockstep)

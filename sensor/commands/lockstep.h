@@ -15,6 +15,8 @@ typedef struct Lockstep {
 Status lockstep_begin(Lockstep *out, Run *run, const LiveClock *live);
 /* The world is made: from here on the host is answered. from_s, to_s: as CigiClock; to_s NaN: without end. */
 void lockstep_span(Lockstep *lockstep, const Run *run, double from_s, double to_s);
+/* What the host says goes into a recording, too. */
+void lockstep_record(Lockstep *lockstep, const CigiTap *tap);
 void lockstep_end(Lockstep *lockstep);
 
 #endif

@@ -84,6 +84,8 @@ static bool take(DisDatagram *out, Live *l, int64_t until_ns)
 {
     DisArrival a;
     while (dis_udp_take(&a, l->udp, until_ns)) {
+        /* what arrived between the opening of the socket and that of the recording */
+        if (l->recording && a.capture_ns < live_recording_first_ns(l->recording)) continue;
         *out = (DisDatagram){.capture_s = dis_unix_s(a.capture_ns), .octets = a.octets, .bytes = a.bytes};
         out->packet_s = out->capture_s;
         if (player_own(out, &l->run.options.config)) {
@@ -219,6 +221,14 @@ static void note(void *user, const char *text)
 {
     const Live *l = user;
     live_recording_note(l->recording, dis_udp_now_ns(), text);
+}
+
+/* What a CIGI host says, into the recording. */
+static void record_host(void *user, const uint8_t from[16], uint16_t port, const uint8_t *bytes, size_t octets)
+{
+    const Live *l = user;
+    live_recording_add(l->recording, dis_udp_now_ns(), from, port, l->run.options.config.exercise.cigi_port, bytes,
+                       octets);
 }
 
 static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
@@ -363,6 +373,11 @@ static Status open_files(Live *l)
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
     const bool radar = strcmp(config->radar.preset, "none") != 0, less = radar || config->quality.deadline;
+    if (*config->exercise.cigi && strcasecmp(output_ending(config->record.path), ".pcap") == 0)
+        log_warn(
+            "run: exercise.cigi: %s has no room for when the host's frames are (pcap): no replay has them; name it "
+            ".pcapng",
+            config->record.path);
     if (strcasecmp(output_ending(config->record.path), ".pcap") == 0)
         log_warn("run: %s has no room for %s%s%swhat the ground was made from (pcap): a replay makes that by the whole "
                  "recording%s; name it .pcapng",
@@ -373,6 +388,7 @@ static Status open_files(Live *l)
         log_warn(
             "run: %s has no room for how the missile flies (pcap), and no replay will fly it again; name it .pcapng",
             config->record.path);
+    lockstep_record(&l->lockstep, &(CigiTap){record_host, note, l});
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
 }
 

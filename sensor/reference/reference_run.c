@@ -34,7 +34,7 @@ static const ReferenceWord words[] = {
     {"TYPE", "the PDU type's number: 1 Entity State, 2 Fire, 3 Detonation ...", NULL, NULL},
     {"REASON", "one of", drop, NULL},
     {"FLAW", "one of", flaw, NULL},
-    {"PACKET", "the CIGI packet's id: 3 Conformal Clamped Entity Control, 8 Rate Control ...", NULL, NULL},
+    {"PACKET", "the CIGI packet's id: 3 Conformal Clamped Entity Control, 4 Component Control ...", NULL, NULL},
     {"FORM", "one of", form, NULL},
     {"FAULT", "one of", answer_fault, NULL},
     {"SKIP", "one of", skip, what_skip},

@@ -360,8 +360,10 @@ static bool exercise_good(const Config *config)
                   config_where(config, "exercise.host"), config->exercise.host, word_hint(&meant));
         good = false;
     }
-    if (*config->exercise.cigi && !cigi_link_address_good(config->exercise.cigi)) {
-        log_error("config: %sexercise.cigi: '%s' is not HOST:PORT with a numeric address, for example 127.0.0.1:8004",
+    if (*config->exercise.cigi && !cigi_link_recorded(config->exercise.cigi) &&
+        !cigi_link_address_good(config->exercise.cigi)) {
+        log_error("config: %sexercise.cigi: '%s' is not HOST:PORT with a numeric address, for example 127.0.0.1:8004, "
+                  "nor `recorded`",
                   config_where(config, "exercise.cigi"), config->exercise.cigi);
         good = false;
     }

@@ -94,7 +94,8 @@ Status config_own_tables(const Config *config)
     if (!config_is_readable("models.catalog", config->models.catalog) ||
         !config_is_readable("models.materials", config->models.materials) ||
         !config_is_readable("sensor.table", config->sensor.table) ||
-        !config_is_readable("radar.table", config->radar.table))
+        !config_is_readable("radar.table", config->radar.table) ||
+        !config_is_readable("exercise.cigi_types", config->exercise.cigi_types))
         return STATUS_BAD_VALUE;
     const bool fits = etc_own_set("catalog.csv", config->models.catalog) &&
                       etc_own_set("materials.csv", config->models.materials) &&

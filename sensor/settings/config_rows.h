@@ -164,9 +164,12 @@ enum { config_paths_size = 4096 };
         "time from the first entity until host, terrain and time of day are chosen; run, replay --causal") \
     ROW(BOOL, exercise., causal, false, "use only what had been received by the time of each frame") \
     ROW(TEXT, exercise., cigi, "", 72, "", \
-        "HOST:PORT of a CIGI 3.3 host, numeric, that gives each frame's time and eye, and waits for it; empty: none") \
+        "HOST:PORT of a CIGI 3.3 host, numeric, that gives each frame's time and eye, and waits for it; recorded: that of " \
+        "the recording, a live node's; empty: none") \
     ROW(INT, exercise., cigi_port, 8005, 1, 65535, "", "UDP port on which that host is listened to") \
-    ROW(INT, exercise., cigi_view, 0, 0, 65535, "", "view of that host that is the eye")
+    ROW(INT, exercise., cigi_view, 0, 0, 65535, "", "view of that host that is the eye") \
+    ROW(PATH, exercise., cigi_types, "", 1024, \
+        "table from that host's entity types to entity types and forces; empty: cigi_types.csv")
 
 #define CONFIG_FLIGHT(ROW) \
     ROW(TEXT, flight., missile, "", 31, "", \

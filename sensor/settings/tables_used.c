@@ -153,6 +153,7 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
     const char *own = strpbrk(config->weather.atmosphere, "/.") ? config->weather.atmosphere : NULL;
     if (status == STATUS_OK) status = add_folder(out, name, own);
     if (*config->radar.table && status == STATUS_OK) status = add_in(out, "radar/", config->radar.table);
+    if (*config->exercise.cigi_types && status == STATUS_OK) status = add_in(out, "cigi/", config->exercise.cigi_types);
     if (*config->sensor.table && status == STATUS_OK) status = add_in(out, "", config->sensor.table);
     if (strpbrk(config->weather.day, "/.") && status == STATUS_OK)
         status = add_in(out, "weather/", config->weather.day);

@@ -7,8 +7,8 @@
 #include "dis/cigi/cigi_datagram.h"
 #include "dis/cigi/cigi_fields.h"
 
-static const uint8_t cigi_ids[] = {1, 2, 16, 17, 21, 24, 25, 26, 101, 102, 103, 104, 105, 106, 107};
-enum { cigi_id_count = (int)sizeof cigi_ids, cigi_host_ids = 8 };
+static const uint8_t cigi_ids[] = {1, 2, 8, 16, 17, 21, 24, 25, 26, 101, 102, 103, 104, 105, 106, 107};
+enum { cigi_id_count = (int)sizeof cigi_ids, cigi_host_ids = 9 };
 
 /* Each field some value that it can hold; numbers are finite. */
 static inline CigiPacket random_cigi(uint8_t id, Dice *d)

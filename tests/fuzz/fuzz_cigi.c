@@ -1,9 +1,10 @@
 /* tests/fuzz/fuzz_cigi.c: any octets as datagrams of a CIGI host and of an image generator: walked, written again, and
- * fed to a session that answers. Without a fuzzer run_corpus.c drives it. */
+ * fed to a session that answers, and to a scene, whose places are finite. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 #include "tests/dis/random_cigi.h"
 
 #include "dis/cigi/cigi_session.h"
+#include "sensor/node/cigi/cigi_scene.h"
 
 #include <stdlib.h>
 
@@ -58,12 +59,36 @@ static void walk(const uint8_t *datagram, size_t octets, CigiSender sender)
     if (read != 0) abort();
 }
 
+static void check_finite(const double *v, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!isfinite(v[i])) abort();
+}
+
+static void look_at(const CigiScene *scene)
+{
+    double p[3], r[9], v[3], w[3];
+    for (int i = 0; i < scene->entity_count; i++) {
+        const uint16_t id = scene->entity[i].id;
+        if (cigi_scene_entity(p, r, scene, id)) check_finite(p, 3), check_finite(r, 9);
+        if (cigi_scene_rates(v, w, scene, id)) check_finite(v, 3), check_finite(w, 3);
+    }
+    for (int i = 0; i < scene->view_count; i++) {
+        const uint16_t id = scene->view[i].view;
+        if (cigi_scene_view(p, r, scene, id)) check_finite(p, 3), check_finite(r, 9);
+        if (cigi_scene_view_rates(v, w, scene, id)) check_finite(v, 3), check_finite(w, 3);
+        cigi_scene_carries(scene, id, 1);
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static CigiSession      s;
+    static CigiScene        scene;
     const CigiSessionConfig config = cigi_session_default_config();
     double                  now_s = 0, last_s = 0;
     cigi_session_begin(&s, &config, now_s);
+    memset(&scene, 0, sizeof scene);
     for (size_t at = 0; at + 2 <= size;) {
         const size_t   wanted = (size_t)data[at] << 8 | data[at + 1], left = size - at - 2;
         const size_t   octets = wanted < left ? wanted : left;
@@ -75,8 +100,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         walk(datagram, octets, CIGI_FROM_HOST);
         walk(datagram, octets, CIGI_FROM_IG);
         const CigiEvent event = cigi_session_receive(&s, datagram, octets, now_s);
-        while (cigi_session_packet(&packet, &s))
+        while (cigi_session_packet(&packet, &s)) {
             cigi_session_answer(&s, &(CigiPacket){.id = cigi_los_extended_response});
+            cigi_scene_take(&scene, &packet);
+        }
         if (event == CIGI_DUE) {
             const double t_s = cigi_session_time_s(&s);
             if (!isfinite(t_s) || (t_s < last_s && !(s.events.restarts))) abort();
@@ -86,5 +113,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         cigi_session_look(&s, now_s);
         if (cigi_session_send(&sent, &sent_octets, &s)) walk(sent, sent_octets, CIGI_FROM_IG);
     }
+    look_at(&scene);
     return 0;
 }

@@ -34,7 +34,7 @@ static void begin(double from_s, double to_s)
     config.exercise.cigi_port = node_port;
     config.exercise.cigi_view = 2;
     c = cigi_clock(NULL);
-    CHECK(cigi_node_open(&c.node, &config) == STATUS_OK);
+    CHECK(cigi_node_open(&c.node, &config, NULL) == STATUS_OK);
     c.from_s = from_s;
     c.to_s = to_s;
     frame_number = 0;

@@ -60,6 +60,57 @@ static void places_on_the_equator(void **state)
     CHECK_NEAR(p[1], 100 - a_m, 1e-8);
 }
 
+static bool rate(CigiRateControl of)
+{
+    return cigi_scene_take(&scene, &(CigiPacket){.id = cigi_rate_control, .of.rate_control = of});
+}
+
+/* On the equator, looking east: forward, right, down are y, -z, -x; north, east, down are z, y, -x. */
+static void rates_on_the_equator(void **state)
+{
+    (void)state;
+    double v[3], w[3];
+    forget();
+    CHECK(rate((CigiRateControl){.v_mps = {1}}) && entity(0, 1, 0, 0, 100, 90)); /* of one that is not there: nothing */
+    CHECK(!cigi_scene_rates(v, w, &scene, 0) && !cigi_scene_view_rates(v, w, &scene, 0));
+    CHECK(rate((CigiRateControl){.local = true, .v_mps = {10, 2, -3}, .yaw_deg_s = 90}));
+    CHECK(rate((CigiRateControl){.of_part = true, .part = 3, .v_mps = {99}})); /* changes nothing */
+    CHECK(cigi_scene_rates(v, w, &scene, 0));
+    CHECK_NEAR(v[0], 3, 1e-12);
+    CHECK_NEAR(v[1], 10, 1e-12);
+    CHECK_NEAR(v[2], -2, 1e-12);
+    CHECK_NEAR(w[0], -pi_rad / 2, 1e-12);
+    CHECK_NEAR(w[1], 0, 1e-12);
+    CHECK_NEAR(w[2], 0, 1e-12);
+    CHECK(view((CigiViewControl){.view = 2, .x_on = true, .yaw_on = true, .offset_m = {4}, .yaw_deg = 20}));
+    CHECK(cigi_scene_view_rates(v, w, &scene, 2)); /* its arm of 4 m swings */
+    CHECK_NEAR(v[0], 3, 1e-9);
+    CHECK_NEAR(v[1], 10, 1e-9);
+    CHECK_NEAR(v[2], -2 - 2 * pi_rad, 1e-8);
+    CHECK(rate((CigiRateControl){.v_mps = {1, 2, 3}, .roll_deg_s = 180}));
+    CHECK(cigi_scene_rates(v, w, &scene, 0));
+    CHECK_NEAR(v[0], -3, 1e-12);
+    CHECK_NEAR(v[1], 2, 1e-12);
+    CHECK_NEAR(v[2], 1, 1e-12);
+    CHECK_NEAR(w[2], pi_rad, 1e-12);
+    CHECK(entity(0, 1, 0, 0, 100, 0) && cigi_scene_rates(v, w, &scene, 0)); /* they stay with the entity */
+    CHECK(child(1, 0, 0, 0, 0) && rate((CigiRateControl){.entity = 1}) && !cigi_scene_rates(v, w, &scene, 1));
+    CHECK(entity(0, cigi_entity_destroyed, 0, 0, 0, 0) && entity(0, 1, 0, 0, 0, 0)); /* and go with it */
+    CHECK(!cigi_scene_rates(v, w, &scene, 0));
+    CHECK(!rate((CigiRateControl){.v_mps = {0, 2e5f}}) && !rate((CigiRateControl){.pitch_deg_s = -2e5f}));
+}
+
+static void what_carries_a_view(void **state)
+{
+    (void)state;
+    forget();
+    CHECK(entity(3, 1, 0, 0, 0, 0) && child(4, 3, 0, 0, 0) && child(5, 4, 0, 0, 0) && child(6, 4, 0, 0, 0));
+    CHECK(view((CigiViewControl){.view = 1, .entity = 5}));
+    CHECK(cigi_scene_carries(&scene, 1, 5) && cigi_scene_carries(&scene, 1, 4) && cigi_scene_carries(&scene, 1, 3));
+    CHECK(!cigi_scene_carries(&scene, 1, 6) && !cigi_scene_carries(&scene, 2, 5));
+    CHECK(child(3, 5, 0, 0, 0) && !cigi_scene_carries(&scene, 1, 6)); /* parents in a circle */
+}
+
 static void what_is_not_enabled_stays(void **state)
 {
     (void)state;
@@ -128,6 +179,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(places_on_the_equator),
+        cmocka_unit_test(rates_on_the_equator),
+        cmocka_unit_test(what_carries_a_view),
         cmocka_unit_test(what_is_not_enabled_stays),
         cmocka_unit_test(groups_of_views),
         cmocka_unit_test(what_is_out_of_range_is_refused),

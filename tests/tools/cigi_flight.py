@@ -73,6 +73,9 @@ def height_of(place):
     return pyproj.Transformer.from_crs(4978, 4979).transform(*place)[2]
 
 
+TANK = 40  # of the host's own, under the last frame's eye
+
+
 def fly(host, out, rough, live):
     answers = {}
     host.heartbeat(1)
@@ -91,7 +94,7 @@ def fly(host, out, rough, live):
             packets += [host.hat_hot(1, 0, *OFFSET, entity=EYE), host.hat_hot(2, 1, *OFFSET, entity=EYE),
                         host.hat_hot(3, 2, lat, lon, h), host.hat_hot(4, 1, -10., 20., 0.),
                         host.hat_hot(5, 0, 0., 0., 0., entity=99), host.los_vector(6, (lat, lon, h), 0., -90., 0., 1e4),
-                        host.sensor(VIEW, 2), host.user(220, 24)]
+                        host.sensor(VIEW, 2), host.user(220, 24), host.entity(TANK, 35.9986, -122.99989, 114., kind=1)]
         host.step(stamp(k), *packets)
         if rough:
             host.send(bytes(24))  # no CIGI
@@ -121,6 +124,9 @@ def judge_frames(host, out, live):
         host.fail(f'frames {[line["frame"] for line in lines]}')
     before = None
     shift_s = lines[0]['time_s'] - stamp(0) / TICKS if live else 0  # a live exercise has a time of its own
+    own = [sorted(t['entity'] for t in line['targets'] if t['entity'].startswith('4711:')) for line in lines]
+    if own != [[]] * (FRAMES - 1) + [[f'4711:1:{TANK}']]:
+        host.fail(f'entities of the host: {own}')
     for k, line in enumerate(lines):
         place, cam = wanted(k)
         got = numpy.array(line['host']['ecef_m'])

@@ -12,6 +12,7 @@ NAMES = {
     2: ('entity_control', 'entity_id entity_state attach_state coll_det_request inherit_alpha ground_ocean_clamp '
         'animation_dir animation_loop_mode animation_state extrapolation_enable alpha entity_type parent_id roll pitch '
         'yaw lat_xoff lon_yoff alt_zoff'),
+    8: ('rate_control', 'entity_id part_id apply_to_part coordinate_system x_rate y_rate z_rate roll_rate pitch_rate yaw_rate'),
     16: ('view_control', 'view_id group_id xoff_enable yoff_enable zoff_enable roll_enable pitch_enable yaw_enable '
          'entity_id xoff yoff zoff roll pitch yaw'),
     17: ('sensor_control', 'view_id sensor_id sensor_on_off polarity line_dropout_enable auto_gain track_white_black '

@@ -4,21 +4,31 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-Status cigi_node_open(CigiNode **out, const Config *config)
+Status cigi_node_open(CigiNode **out, const Config *config, const char *log)
 {
     const CigiSessionConfig session = cigi_session_default_config();
     CigiNode               *node = calloc(1, sizeof *node);
     if (!node) return STATUS_NO_MEMORY;
-    const Status status = cigi_link_open(&node->link, config->exercise.cigi, config->exercise.cigi_port);
+    Status     status = cigi_types_read(&node->drawn.types, config->exercise.cigi_types);
+    const bool recorded = log && cigi_link_recorded(config->exercise.cigi);
+    node->port = config->exercise.cigi_port;
+    if (status == STATUS_OK)
+        status = recorded ? cigi_recorded_open(&node->recorded, log, node->port)
+                          : cigi_link_open(&node->link, config->exercise.cigi, node->port);
     if (status != STATUS_OK) {
         cigi_node_close(node);
         return status;
     }
     node->view = (uint16_t)config->exercise.cigi_view;
+    node->drawn.site = (uint16_t)config->node.site;
+    node->drawn.application = (uint16_t)config->node.application;
+    node->drawn.by_arrival = config->exercise.causal;
     node->hfov_deg = config->sensor.hfov_deg;
     cigi_session_begin(&node->session, &session, wall_clock_s());
-    log_info("cigi: in step with the host at %s; it is listened to on port %d, and has the eye (view %d)",
-             config->exercise.cigi, config->exercise.cigi_port, config->exercise.cigi_view);
+    if (recorded) log_info("cigi: the eye and the frames are those of the host in %s", log);
+    else
+        log_info("cigi: in step with the host at %s; it is listened to on port %d, and has the eye (view %d)",
+                 config->exercise.cigi, config->exercise.cigi_port, config->exercise.cigi_view);
     *out = node;
     return STATUS_OK;
 }
@@ -42,10 +52,14 @@ static void say_counted(const CigiNode *node)
                      i);
     if (node->scene.refused)
         log_warn("cigi: %" PRIu64 " entities and views are out of range, or too many", node->scene.refused);
+    if (node->drawn.unmapped)
+        log_warn("cigi: %" PRIu64 " entities have a type that the table of types has not, and are not drawn "
+                 "(exercise.cigi_types)",
+                 node->drawn.unmapped);
     if (node->requests_lost + e->unanswered)
         log_warn("cigi: %" PRIu64 " requests did not fit into a frame (%d), or its answers into a datagram",
                  node->requests_lost + e->unanswered, cigi_requests_most);
-    if (cigi_link_foreign(node->link) + cigi_link_unsent(node->link))
+    if (node->link && cigi_link_foreign(node->link) + cigi_link_unsent(node->link))
         log_warn("cigi: %" PRIu64 " datagrams of others than the host are not used; %" PRIu64 " could not be sent",
                  cigi_link_foreign(node->link), cigi_link_unsent(node->link));
 }
@@ -53,7 +67,8 @@ static void say_counted(const CigiNode *node)
 void cigi_node_close(CigiNode *node)
 {
     if (!node) return;
-    if (node->link) say_counted(node);
+    if (node->link || node->recorded) say_counted(node);
+    cigi_recorded_close(node->recorded);
     cigi_link_close(node->link);
     free(node);
 }
@@ -64,7 +79,8 @@ static void send_due(CigiNode *node)
 {
     const uint8_t *datagram;
     size_t         octets;
-    if (cigi_session_send(&datagram, &octets, &node->session)) cigi_link_send(node->link, datagram, octets);
+    if (cigi_session_send(&datagram, &octets, &node->session) && node->link)
+        cigi_link_send(node->link, datagram, octets);
 }
 
 static void answer(CigiNode *node, const CigiPacket *request, const CigiGround *ground)
@@ -180,12 +196,37 @@ static void say_unheard(CigiNode *node)
 {
     const CigiSession *s = &node->session;
     if (node->asked_s == 0) node->asked_s = wall_clock_s();
-    if (s->heard || node->unheard || wall_clock_s() - node->asked_s < s->config.silent_s) return;
+    if (s->heard || node->unheard || node->recorded || wall_clock_s() - node->asked_s < s->config.silent_s) return;
     node->unheard = true;
     log_warn(
         "cigi: no host has answered Start of Frame for %g s; it is sent on: exercise.cigi and exercise.cigi_port say "
         "where to and from",
         s->config.silent_s);
+}
+
+/* The host's next datagram, which goes into the recording. */
+static bool receive(const uint8_t **datagram, size_t *octets, CigiNode *node, double wait_s)
+{
+    uint8_t  from[16];
+    uint16_t port;
+    if (node->recorded) {
+        node->over = !cigi_recorded_take(datagram, octets, node->recorded);
+        return !node->over;
+    }
+    if (!cigi_link_receive(datagram, octets, node->link, wait_s)) return false;
+    node->received++;
+    cigi_link_host(from, &port, node->link);
+    if (node->tap.datagram) node->tap.datagram(node->tap.user, from, port, *datagram, *octets);
+    return true;
+}
+
+double cigi_node_offset_s(const CigiNode *node) { return cigi_recorded_offset_s(node->recorded); }
+
+void cigi_node_note_offset(const CigiNode *node, double offset_s)
+{
+    char text[cigi_time_note_size];
+    cigi_time_note_text(text, &(CigiTimeNote){node->received, offset_s, node->port});
+    if (node->tap.note) node->tap.note(node->tap.user, text);
 }
 
 CigiEvent cigi_node_wait(CigiNode *node, const CigiGround *ground, double wait_s)
@@ -196,7 +237,7 @@ CigiEvent cigi_node_wait(CigiNode *node, const CigiGround *ground, double wait_s
     CigiPacket     packet;
     send_due(node);
     say_unheard(node);
-    const bool heard = cigi_link_receive(&datagram, &octets, node->link, wait_s);
+    const bool heard = receive(&datagram, &octets, node, wait_s);
     CigiEvent  event = heard ? cigi_session_receive(s, datagram, octets, wall_clock_s()) : CIGI_REFUSED;
     if (event != CIGI_REFUSED) say_news(s);
     if (heard && cigi_session_news(s) & CIGI_NEWS_RESTARTED) node->standing_count = node->requests = 0;
@@ -216,6 +257,7 @@ bool cigi_node_fix(CigiNode *node, double t_s)
         once(&node->unseen, "the host has not said where the eye is: Entity Control of the entity that its view is on");
         return false;
     }
+    fix.rated = cigi_scene_view_rates(fix.v_ecef_mps, fix.w_ecef_rps, &node->scene, node->view);
     node->fix[1] = node->fix[0];
     node->fix[0] = fix;
     node->fixes = node->fixes < 2 ? node->fixes + 1 : 2;

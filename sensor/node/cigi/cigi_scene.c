@@ -4,6 +4,8 @@
 #include "entities/motion/dead_reckoning.h"
 #include "terrain/earth/geodesy.h"
 
+enum { most_parents = 8 }; /* from a view's entity on */
+
 /* ---- what is taken ------------------------------------------------------------------------------ */
 
 static bool within(double v, double most) { return fabs(v) <= most; }
@@ -27,18 +29,44 @@ static const CigiEntityControl *find(const CigiScene *scene, uint16_t id)
     return NULL;
 }
 
+static void remove_entity(CigiScene *scene, int at)
+{
+    const int last = --scene->entity_count;
+    scene->entity[at] = scene->entity[last];
+    scene->rate[at] = scene->rate[last];
+    scene->rated[at] = scene->rated[last];
+}
+
 static bool take_entity(CigiScene *scene, const CigiEntityControl *e)
 {
     CigiEntityControl *known = (CigiEntityControl *)find(scene, e->id);
     if (!place_good(e->p, e->attached) || !turn_good(e->yaw_deg, e->pitch_deg, e->roll_deg)) return false;
     if (known && e->state == cigi_entity_destroyed) {
-        *known = scene->entity[--scene->entity_count];
+        remove_entity(scene, (int)(known - scene->entity));
         return true;
     }
     if (e->state == cigi_entity_destroyed) return true;
     if (!known && scene->entity_count == cigi_entities_most) return false;
-    if (!known) known = &scene->entity[scene->entity_count++];
+    if (!known) {
+        scene->rated[scene->entity_count] = false;
+        known = &scene->entity[scene->entity_count++];
+    }
     *known = *e;
+    return true;
+}
+
+static bool take_rate(CigiScene *scene, const CigiRateControl *r)
+{
+    enum { most_mps = 100000, most_deg_s = 100000 };
+    const CigiEntityControl *e = find(scene, r->entity);
+    for (int i = 0; i < 3; i++)
+        if (!within((double)r->v_mps[i], most_mps)) return false;
+    if (!within((double)r->roll_deg_s, most_deg_s) || !within((double)r->pitch_deg_s, most_deg_s) ||
+        !within((double)r->yaw_deg_s, most_deg_s))
+        return false;
+    if (!e || r->of_part) return true;
+    scene->rate[e - scene->entity] = *r;
+    scene->rated[e - scene->entity] = true;
     return true;
 }
 
@@ -80,6 +108,7 @@ bool cigi_scene_take(CigiScene *scene, const CigiPacket *packet)
 {
     bool good = true;
     if (packet->id == cigi_entity_control) good = take_entity(scene, &packet->of.entity_control);
+    if (packet->id == cigi_rate_control) good = take_rate(scene, &packet->of.rate_control);
     if (packet->id == cigi_view_control) good = take_view(scene, &packet->of.view_control);
     if (packet->id == cigi_view_definition) {
         CigiViewControl *view = view_of(scene, packet->of.view_definition.view);
@@ -113,7 +142,6 @@ static void turned(double out[9], const double r_ecef_from_axes[9], double yaw_d
 
 bool cigi_scene_entity(double p_ecef[3], double r_ecef_from_body[9], const CigiScene *scene, uint16_t id)
 {
-    enum { most_parents = 8 };
     const CigiEntityControl *line[most_parents];
     int                      count = 0;
     double                   p[3], r[9], r_axes[9];
@@ -137,13 +165,56 @@ bool cigi_scene_entity(double p_ecef[3], double r_ecef_from_body[9], const CigiS
     return true;
 }
 
+/* One that was never controlled is on entity 0. */
+static CigiViewControl find_view(const CigiScene *scene, uint16_t view)
+{
+    for (int i = 0; i < scene->view_count; i++)
+        if (scene->view[i].view == view) return scene->view[i];
+    return (CigiViewControl){.view = view};
+}
+
+bool cigi_scene_carries(const CigiScene *scene, uint16_t view, uint16_t id)
+{
+    int                      left = most_parents;
+    const CigiEntityControl *e = find(scene, find_view(scene, view).entity);
+    for (; e && left > 0; e = e->attached ? find(scene, e->parent) : NULL, left--)
+        if (e->id == id) return true;
+    return false;
+}
+
+bool cigi_scene_rates(double v_ecef_mps[3], double w_ecef_rps[3], const CigiScene *scene, uint16_t id)
+{
+    const CigiEntityControl *e = find(scene, id);
+    double                   p[3], r_axes[9], r_body[9];
+    if (!e || e->attached || !scene->rated[e - scene->entity] || !on_earth(p, r_axes, e->p)) return false;
+    const CigiRateControl *rate = &scene->rate[e - scene->entity];
+    const double           v_mps[3] = {rate->v_mps[0], rate->v_mps[1], rate->v_mps[2]},
+                 w_rps[3] = {rad_per_deg * (double)rate->roll_deg_s, rad_per_deg * (double)rate->pitch_deg_s,
+                             rad_per_deg * (double)rate->yaw_deg_s};
+    turned(r_body, r_axes, e->yaw_deg, e->pitch_deg, e->roll_deg);
+    m3_mul_v3(v_ecef_mps, rate->local ? r_body : r_axes, v_mps);
+    m3_mul_v3(w_ecef_rps, rate->local ? r_body : r_axes, w_rps);
+    return true;
+}
+
+bool cigi_scene_view_rates(double v_ecef_mps[3], double w_ecef_rps[3], const CigiScene *scene, uint16_t view)
+{
+    const CigiViewControl v = find_view(scene, view);
+    double                p_ecef[3], p_view[3], r[9], arm_ecef[3], swing_mps[3];
+    if (!cigi_scene_rates(v_ecef_mps, w_ecef_rps, scene, v.entity) || !cigi_scene_entity(p_ecef, r, scene, v.entity) ||
+        !cigi_scene_view(p_view, r, scene, view))
+        return false;
+    v3_sub(arm_ecef, p_view, p_ecef);
+    v3_cross(swing_mps, w_ecef_rps, arm_ecef);
+    v3_add(v_ecef_mps, v_ecef_mps, swing_mps);
+    return true;
+}
+
 bool cigi_scene_view(double p_ecef[3], double r_ecef_from_view[9], const CigiScene *scene, uint16_t view)
 {
-    CigiViewControl v = {.view = view};
-    for (int i = 0; i < scene->view_count; i++)
-        if (scene->view[i].view == view) v = scene->view[i];
-    const double offset_m[3] = {v.offset_m[0], v.offset_m[1], v.offset_m[2]};
-    double       p[3], r[9], offset_ecef[3];
+    const CigiViewControl v = find_view(scene, view);
+    const double          offset_m[3] = {v.offset_m[0], v.offset_m[1], v.offset_m[2]};
+    double                p[3], r[9], offset_ecef[3];
     if (!cigi_scene_entity(p, r, scene, v.entity)) return false;
     m3_mul_v3(offset_ecef, r, offset_m);
     v3_add(p_ecef, p, offset_ecef);

@@ -14,10 +14,13 @@ typedef struct CigiClock {
     double     last_s;       /* of the last frame */
     int        made;         /* frames */
     /* With a live exercise, whose time goes on by itself: the host's first frame, and its first after a restart, is at
-     * the exercise time that arrives just then, and the others as long after it as its time stamps say. */
+     * the exercise time that arrives just then, and the others as long after it as its time stamps say; none is made
+     * before its time arrives. */
     const LiveClock *live;     /* NULL: exercise time is the host's time stamp; the caller's, it has a player */
     double           offset_s; /* exercise time less the host's */
     uint64_t         restarts; /* of the host, by the last frame */
+    bool             due;      /* live: the frame at due_s was asked for, and its time is still to come */
+    double           due_s;
 } CigiClock;
 
 /* A clock that waits for node, ground, from_s and to_s. live: NULL: with a recording. */

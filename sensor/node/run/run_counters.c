@@ -222,6 +222,7 @@ static const Field cigi_rows[] = {
     {"requests_lost", "", "", "", "requests that did not fit into a frame", OF_CIGI(requests_lost)},
     {"answers_lost", "", "", "", "answers that did not fit into a datagram", OF_CIGI(session.events.unanswered)},
     {"out_of_range", "", "", "", "entities and views refused: a value, too many", OF_CIGI(scene.refused)},
+    {"unmapped", "", "", "", "entities with a type that exercise.cigi_types lacks: not drawn", OF_CIGI(drawn.unmapped)},
     {"dropped", "", "", "", "refused, by reason", FIELD_OBJECT(cigi_drop_rows)},
     {"skipped", "", "", "", "packets that are not read, by id", FIELD_OBJECT(cigi_skipped_rows)},
 };

@@ -26,8 +26,8 @@ static void turn_on(double out[9], const double r[9], const double w_rps[3], dou
     m3_mul(out, r, turn);
 }
 
-/* Where the eye is at t_s: at a frame of the host as it said, about it as it moves since the frame before; of a host
- * whose frames are more than longest_s apart that is not known. */
+/* Where the eye is at t_s: at a frame of the host as it said, about it as it moves by its Rate Control, else since the
+ * frame before; of a host whose frames are more than longest_s apart that is not known. */
 static bool cigi_eye(Eye *eye, HostMotion *motion, Snapshot *snapshot, double t_s)
 {
     static const double longest_s = 1;
@@ -39,7 +39,10 @@ static bool cigi_eye(Eye *eye, HostMotion *motion, Snapshot *snapshot, double t_
     if (node->fixes == 0) return false;
     const double step_s = now->t_s - before->t_s, since_s = t_s - now->t_s;
     camera_axes(r_cam, now->r_ecef_from_view);
-    if (node->fixes == 2 && step_s > 0 && step_s <= longest_s) {
+    if (now->rated) {
+        m3_tmul_v3(eye->w_cam_rps, r_cam, now->w_ecef_rps);
+        memcpy(eye->state.v_ecef_mps, now->v_ecef_mps, sizeof eye->state.v_ecef_mps);
+    } else if (node->fixes == 2 && step_s > 0 && step_s <= longest_s) {
         camera_axes(r_before, before->r_ecef_from_view);
         seeker_turn_rate(eye->w_cam_rps, r_before, r_cam, step_s);
         for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] = (now->p_ecef[k] - before->p_ecef[k]) / step_s;
@@ -62,6 +65,14 @@ static void cigi_tick(HostMotion *motion, double t_s)
     s->aim_known |= session_aim_at(s->p_aim_ecef, s, t_s); /* gone: the last position is kept */
 }
 
+static void cigi_begin(HostMotion *motion, double t_s)
+{
+    Session        *s = motion->s;
+    CigiNode *const node = s->shared->cigi;
+    session_note_failure(s, "entities of the CIGI host",
+                         cigi_drawn_show(&node->drawn, s->table, &node->scene, node->view, t_s));
+}
+
 static bool cigi_is_there(const HostMotion *motion) { return motion->s->shared->cigi->fixes > 0; }
 
 static void cigi_destroy(HostMotion *motion) { free(motion); }
@@ -70,7 +81,7 @@ Status session_host_cigi(HostMotion **out, Session *s)
 {
     HostMotion *host = malloc(sizeof *host);
     if (!host) return STATUS_NO_MEMORY;
-    *host = (HostMotion){s, cigi_tick, cigi_is_there, cigi_eye, cigi_destroy};
+    *host = (HostMotion){s, cigi_tick, cigi_is_there, cigi_eye, cigi_destroy, cigi_begin};
     *out = host;
     session_name_host(s);
     return STATUS_OK;

@@ -283,7 +283,7 @@ Status session_host_entity(HostMotion **out, Session *s)
         const int nodes = catalog_model(catalog, m)->node_count;
         most_nodes = nodes > most_nodes ? nodes : most_nodes;
     }
-    h->motion = (HostMotion){s, host_tick, host_is_there, host_eye, host_destroy};
+    h->motion = (HostMotion){s, host_tick, host_is_there, host_eye, host_destroy, NULL};
     h->s = s;
     h->seeker.config =
         (SeekerConfig){config->sensor.gimbal_limit_deg * rad_per_deg, config->sensor.gimbal_rate_dps * rad_per_deg,

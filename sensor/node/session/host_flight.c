@@ -150,7 +150,7 @@ Status session_host_flight(HostMotion **out, Session *s)
 {
     HostMotion *host = malloc(sizeof *host);
     if (!host) return STATUS_NO_MEMORY;
-    *host = (HostMotion){s, flight_tick, flight_is_there, flight_eye, flight_destroy};
+    *host = (HostMotion){s, flight_tick, flight_is_there, flight_eye, flight_destroy, NULL};
     *out = host;
     s->plan.host = s->shared->flight->id;
     s->plan.aim = s->shared->flight->target;

@@ -92,7 +92,8 @@ Status session_host_observer(HostMotion **out, Session *s)
 {
     Observer *o = malloc(sizeof *o);
     if (!o) return STATUS_NO_MEMORY;
-    *o = (Observer){{s, observer_tick, observer_is_there, observer_eye, observer_destroy}, s->shared->world->frame};
+    *o = (Observer){{s, observer_tick, observer_is_there, observer_eye, observer_destroy, NULL},
+                    s->shared->world->frame};
     double   p_ecef[3];
     Geodetic place;
     if (choice_aim_place(p_ecef, s->shared->survey, &s->plan) && geodetic_from_ecef(&place, p_ecef) == STATUS_OK) {

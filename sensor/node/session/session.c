@@ -96,6 +96,7 @@ Status session_frame(bool *shown, Session *s, const FrameTime *at)
     int               left_out = 0;
     if (loop && loop->hooks && loop->hooks->boundary) loop->hooks->boundary(loop->hooks->user, at->t_s);
     session_advance(s, at->t_s);
+    if (s->host->begin) s->host->begin(s->host, at->t_s);
     session_prepare(s, at->t_s);
     Status status = s->advance_status;
     *shown = false;

@@ -96,6 +96,8 @@ struct HostMotion {
     /* As session_eye; eye: nothing is filled in yet. */
     bool (*eye)(Eye *eye, HostMotion *host, Snapshot *snapshot, double t_s);
     void (*destroy)(HostMotion *host);
+    /* Before each frame, at its time, after the ticks; NULL: nothing. */
+    void (*begin)(HostMotion *host, double t_s);
 };
 
 /* An entity of the table, or munitions one after the other, and a sensor mounted on it with a gimbal. *out may be there

@@ -27,6 +27,7 @@ static Status write_settings(char **text, const Config *config)
     if (strcmp(plain.terrain.buildings, "invented") != 0)
         snprintf(plain.terrain.buildings, sizeof plain.terrain.buildings, "off");
     *plain.terrain.geoid = *plain.record.path = *plain.quality.table = *plain.exercise.cigi = *plain.flight.missile = 0;
+    *plain.exercise.cigi_types = 0;
     FILE *to = open_memstream(text, &octets);
     if (!to) return STATUS_NO_MEMORY;
     config_write_settings(to, &plain);
