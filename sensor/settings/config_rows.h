@@ -10,7 +10,7 @@ enum { config_paths_size = 4096 };
 /* clang-format off */
 #define CONFIG_ROWS(ROW) \
     CONFIG_SENSOR(ROW) CONFIG_DETECTOR(ROW) CONFIG_RADAR(ROW) CONFIG_EXERCISE(ROW) CONFIG_NETWORK(ROW) \
-    CONFIG_NODE(ROW) CONFIG_PUBLISH(ROW) CONFIG_RECORD(ROW) CONFIG_WEATHER(ROW) CONFIG_HEAT(ROW) CONFIG_TERRAIN(ROW) \
+    CONFIG_NODE(ROW) CONFIG_PUBLISH(ROW) CONFIG_PROJECTOR(ROW) CONFIG_RECORD(ROW) CONFIG_WEATHER(ROW) CONFIG_HEAT(ROW) CONFIG_TERRAIN(ROW) \
     CONFIG_OBSERVER(ROW) CONFIG_MODELS(ROW) CONFIG_ENTITIES(ROW) CONFIG_QUALITY(ROW) CONFIG_CACHE(ROW) CONFIG_TOP(ROW)
 
 #define CONFIG_SENSOR(ROW) \
@@ -166,7 +166,10 @@ enum { config_paths_size = 4096 };
     ROW(TEXT, exercise., cigi, "", 72, "", \
         "HOST:PORT of a CIGI 3.3 host, numeric, that gives each frame's time and eye, and waits for it; empty: none") \
     ROW(INT, exercise., cigi_port, 8005, 1, 65535, "", "UDP port on which that host is listened to") \
-    ROW(INT, exercise., cigi_view, 0, 0, 65535, "", "view of that host that is the eye")
+    ROW(INT, exercise., cigi_view, 0, 0, 65535, "", "view of that host that is the eye") \
+    ROW(TEXT, exercise., head, "", 72, "", \
+        "ADDRESS:PORT, numeric, on which a head tracker's poses turn the eye (etc/reference/head.md); of a replay: those " \
+        "of its recording; empty: none")
 
 #define CONFIG_NETWORK(ROW) \
     ROW(TEXT, network., address, "", 64, "", \
@@ -246,6 +249,26 @@ enum { config_paths_size = 4096 };
     ROW(INT, publish., detections_port, 0, 0, 65535, "", \
         "UDP port on loopback that receives a recogniser's answers (PVDETECT, JSON or MISB ST 0903), for answers.jsonl " \
         "and metadata; 0: none")
+
+#define CONFIG_PROJECTOR(ROW) \
+    ROW(TEXT, projector., band, "", 16, "", \
+        "band that is shown on a display of this machine, a scene projector's: optical, mwir, lwir, radar, or a channel " \
+        "in the place of one; empty: none") \
+    ROW(PATH, projector., table, "", 1024, \
+        "CSV table from radiance or raw counts to drive levels; empty: the display image's values, with 16 bits raw " \
+        "counts") \
+    ROW(INT, projector., bits, 8, 8, 16, "", \
+        "bits of a drive level, 8 or 16. 16: red is the high octet, green the low one, blue 0") \
+    ROW(INT, projector., display, 0, 0, 15, "", "which display, as the window system counts them") \
+    ROW(TEXT, projector., window, "full", 16, "", \
+        "full: the whole display; WIDTHxHEIGHT: a window of that size in the middle of it") \
+    ROW(CHOICE, projector., scale, PROJECTOR_WHOLE, ProjectorScale, \
+        (PROJECTOR_ONE, "one")(PROJECTOR_WHOLE, "whole")(PROJECTOR_FIT, "fit"), \
+        "the image in the middle, each of its pixels one of the display; a square of the largest whole number of these " \
+        "a side; or as large as there is room, by nearest neighbours") \
+    ROW(SWITCH, projector., vsync, true, "on|off", "frames are flipped at the display's refresh; off: at once") \
+    ROW(INT, projector., wait_ms, 0, 0, 10000, "ms", \
+        "how long a frame is held up at most until it is flipped, as a host in step (exercise.cigi) may want; 0: never")
 
 #define CONFIG_RECORD(ROW) \
     ROW(PATH, record., path, "", 1024, "pcapng file to which `run` records all received datagrams; empty: none")

@@ -80,6 +80,8 @@ static const struct Row {
     {"speed", SPEED, IN_REPLAY, NULL, "X", "exercise seconds per second, or max (default: max)"},
     {"cigi", KEY, IN_BOTH, "exercise.cigi", "HOST:PORT",
      "a CIGI 3.3 host gives each frame's time and eye, and waits for it"},
+    {"head", KEY, IN_RUN, "exercise.head", "ADDRESS:PORT", "where a head tracker, or gamepad, says how the eye is turned"},
+    {"head", KEY, IN_REPLAY, "exercise.head", "ADDRESS:PORT", "the eye is turned as the recording of `run --head` says"},
     {"causal", KEY, IN_REPLAY, "exercise.causal=true", NULL,
      "use only what had been received by the time of each frame and each\n"
      "choice: the frames of `pitviper run`, to the bit"},
@@ -104,6 +106,7 @@ static const struct Row {
      "udp://HOST:PORT: live video with metadata (MPEG-TS), one port per band"},
     {"memory", KEY, IN_BOTH, "publish.memory", "NAME",
      "a ring of frames in shared memory, for a recogniser on this machine"},
+    {"projector", KEY, IN_BOTH, "projector.band", "BAND", "one band on a display, the whole of it (projector.window)"},
     {"latest", KEY, IN_BOTH, "publish.latest=true", NULL, "DIR/latest/BAND.png: the newest display of each band"},
     {"sweep", SWEEP, IN_REPLAY, NULL, "FILE",
      "one run for each combination of the settings in a YAML file, in folders\n"
