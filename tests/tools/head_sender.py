@@ -95,7 +95,7 @@ def judge(out):
             down = [-math.cos(lat) * math.cos(lon), -math.cos(lat) * math.sin(lon), -math.sin(lat)]
             base = Rotation.from_matrix(numpy.array([north, numpy.cross(down, north), down]).T)
         axes = (base * look).as_matrix()
-        camera = numpy.array(sensor['r_ecef_from_cam']).reshape(3, 3)
+        camera = numpy.array(sensor['ecef_from_cam']).reshape(3, 3)
         expected = axes[:, [1, 2, 0]]
         worst = max(worst, float(numpy.abs(camera - expected).max()))
         kinds.add((head['relative'], head['zoom']))
@@ -109,8 +109,7 @@ def judge(out):
             worst = max(worst, float(numpy.abs(there - p).max()) * 1e-3)
     turned = sum('head' in line for line in frames)
     print(f'{turned} of {len(frames)} frames were turned, {len(kinds)} kinds; the worst differs by {worst:.1e}')
-    # psi, theta, phi of truth.jsonl are exact to 1e-4 deg; places to a millimetre
-    if turned < 5 or len(kinds) < 3 or worst > 3e-6:
+    if turned < 5 or len(kinds) < 3 or worst > 1e-8:
         print('FAILED: poses')
         sys.exit(1)
 
