@@ -102,9 +102,9 @@ Status head_link_open(HeadLink **out, const char *address_port)
         return STATUS_BAD_VALUE;
     }
     link->socket = socket(own.any.sa_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (link->socket < 0 ||
-        setsockopt(link->socket, SOL_SOCKET, SO_RCVTIMEO, &look, sizeof look) != 0 ||
-        bind(link->socket, &own.any, own.any.sa_family == AF_INET6 ? sizeof own.v6 : sizeof own.v4) != 0 || !start(link)) {
+    if (link->socket < 0 || setsockopt(link->socket, SOL_SOCKET, SO_RCVTIMEO, &look, sizeof look) != 0 ||
+        bind(link->socket, &own.any, own.any.sa_family == AF_INET6 ? sizeof own.v6 : sizeof own.v4) != 0 ||
+        !start(link)) {
         log_error("head: cannot listen on %s: %s; choose another address or port (exercise.head)", address_port,
                   strerror(errno));
         head_link_close(link, NULL);
@@ -120,7 +120,8 @@ void head_link_close(HeadLink *link, HeadCounters *counters)
     pthread_mutex_lock(&link->lock);
     link->ends = true;
     pthread_mutex_unlock(&link->lock);
-    if (link->socket >= 0) shutdown(link->socket, SHUT_RD); /* wakes its thread, though it says that it is not connected */
+    if (link->socket >= 0)
+        shutdown(link->socket, SHUT_RD); /* wakes its thread, though it says that it is not connected */
     if (link->running) pthread_join(link->thread, NULL);
     if (link->socket >= 0) close(link->socket);
     if (counters) *counters = link->counters;

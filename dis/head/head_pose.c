@@ -14,9 +14,9 @@ static bool within(double v, double low, double high) { return v >= low && v <= 
 
 static bool in_range(const HeadPose *p)
 {
-    return within(p->yaw_deg, -360, 360) && within(p->pitch_deg, -90, 90) &&
-           within(p->roll_deg, -360, 360) && within(p->zoom, 0.05, 100) && within(p->lat_deg, -90, 90) &&
-           within(p->lon_deg, -360, 360) && within(p->height_m, -1e3, 1e5);
+    return within(p->yaw_deg, -360, 360) && within(p->pitch_deg, -90, 90) && within(p->roll_deg, -360, 360) &&
+           within(p->zoom, 0.05, 100) && within(p->lat_deg, -90, 90) && within(p->lon_deg, -360, 360) &&
+           within(p->height_m, -1e3, 1e5);
 }
 
 HeadDrop head_pose_read(HeadPose *out, const uint8_t *octets, size_t count)

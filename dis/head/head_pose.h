@@ -29,7 +29,7 @@ typedef struct HeadPose {
     uint32_t sequence, buttons;
     uint64_t time_us;
     double   yaw_deg, pitch_deg, roll_deg, zoom; /* each a float's value */
-    double   lat_deg, lon_deg, height_m; /* without HEAD_PLACED 0 */
+    double   lat_deg, lon_deg, height_m;         /* without HEAD_PLACED 0 */
 } HeadPose;
 
 typedef enum HeadDrop {

@@ -26,13 +26,13 @@ typedef struct Entry {
 } Entry;
 
 struct Latency {
-    pthread_mutex_t lock;
-    uint64_t        keys;
-    int             consumers;
-    char            name[latency_consumers_max][latency_name_size];
-    int             expected[latency_consumers_max];
-    Entry           entry[latency_frames];
-    LatencyHistogram       stage[LATENCY_STAGE_COUNT], consumer[latency_consumers_max];
+    pthread_mutex_t  lock;
+    uint64_t         keys;
+    int              consumers;
+    char             name[latency_consumers_max][latency_name_size];
+    int              expected[latency_consumers_max];
+    Entry            entry[latency_frames];
+    LatencyHistogram stage[LATENCY_STAGE_COUNT], consumer[latency_consumers_max];
 };
 
 const char *const latency_stage_name[LATENCY_STAGE_COUNT] = {"arrival_to_pose", "pose_to_render", "render", "display"};

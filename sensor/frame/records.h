@@ -48,7 +48,7 @@ typedef struct FrameRecord {
     const RadarFrame     *radar;        /* NULL: none */
     bool                  turned;       /* the eye, by a head tracker: head */
     HeadPose              head;
-    const char           *given_up;     /* of quality, by a live node, separated by commas; NULL: nothing */
+    const char           *given_up; /* of quality, by a live node, separated by commas; NULL: nothing */
 } FrameRecord;
 
 /* Writes one line and flushes it. STATUS_IO when it cannot be written. */

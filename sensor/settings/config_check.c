@@ -373,8 +373,9 @@ static bool exercise_good(const Config *config)
         good = false;
     }
     if (*config->exercise.head && !head_address_good(config->exercise.head)) {
-        log_error("config: %sexercise.head: '%s' is not ADDRESS:PORT with a numeric address, for example 127.0.0.1:5010",
-                  config_where(config, "exercise.head"), config->exercise.head);
+        log_error(
+            "config: %sexercise.head: '%s' is not ADDRESS:PORT with a numeric address, for example 127.0.0.1:5010",
+            config_where(config, "exercise.head"), config->exercise.head);
         good = false;
     }
     if (*config->exercise.head && *config->exercise.cigi) {

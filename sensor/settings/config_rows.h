@@ -214,7 +214,7 @@ enum { config_paths_size = 4096 };
         "targets with a smaller snr in a band, whatever its sign, are ignore regions of that band's images in " \
         "coco.json (iscrowd)") \
     ROW(BOOL, publish., truth, true, \
-        "write truth.jsonl and hash every frame; false, in `run` and `replay --speed X` only: neither is " \
+        "write truth.jsonl and hash every frame; false, in `run`, `replay --speed X` and with a CIGI host only: neither is " \
         "computed, and truth planes only if another product has them") \
     ROW(BOOL, publish., latest, false, "keep latest/BAND.png, the newest display of each band, replaced as a whole") \
     ROW(PATH, publish., video, "", config_paths_size, \

@@ -80,8 +80,10 @@ static const struct Row {
     {"speed", SPEED, IN_REPLAY, NULL, "X", "exercise seconds per second, or max (default: max)"},
     {"cigi", KEY, IN_BOTH, "exercise.cigi", "HOST:PORT",
      "a CIGI 3.3 host gives each frame's time and eye, and waits for it"},
-    {"head", KEY, IN_RUN, "exercise.head", "ADDRESS:PORT", "where a head tracker, or gamepad, says how the eye is turned"},
-    {"head", KEY, IN_REPLAY, "exercise.head", "ADDRESS:PORT", "the eye is turned as the recording of `run --head` says"},
+    {"head", KEY, IN_RUN, "exercise.head", "ADDRESS:PORT",
+     "where a head tracker, or gamepad, says how the eye is turned"},
+    {"head", KEY, IN_REPLAY, "exercise.head", "ADDRESS:PORT",
+     "the eye is turned as the recording of `run --head` says"},
     {"causal", KEY, IN_REPLAY, "exercise.causal=true", NULL,
      "use only what had been received by the time of each frame and each\n"
      "choice: the frames of `pitviper run`, to the bit"},

@@ -29,9 +29,10 @@ Status projector_check(const Config *config)
     }
 #ifndef PITVIPER_SDL
     if (*config->projector.band) {
-        log_error("config: %sprojector.band: this program was built without SDL2; install libsdl2-dev and build it again, "
-                  "or leave it out",
-                  config_where(config, "projector.band"));
+        log_error(
+            "config: %sprojector.band: this program was built without SDL2; install libsdl2-dev and build it again, "
+            "or leave it out",
+            config_where(config, "projector.band"));
         good = false;
     }
 #endif

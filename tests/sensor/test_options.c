@@ -11,6 +11,8 @@ enum { line_max = 40 };
 static const char *const samples[][2] = {
     {"port", "3001"},
     {"cigi", "127.0.0.1:8004"},
+    {"head", "127.0.0.1:5010"},
+    {"projector", "lwir"},
     {"out", "elsewhere"},
     {"bands", "lwir"},
     {"size", "64x48"},

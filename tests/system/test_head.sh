@@ -52,6 +52,20 @@ replay "$tmp/head.pcapng" "$tmp/plain" --causal --port 0 "${few[@]}" --no-files 
 check "its twin: without --head" [ $code = 0 ]
 check "has other bits" not quiet agree "$tmp/head" "$tmp/plain" $((made - 1))
 
+# the example's datagrams are those of the page
+check "the example sends the same octets" python3 - <<'PY'
+import struct, sys
+sys.path[:0] = ['etc/examples', 'tests/tools']
+sys.argv = ['', 'none']
+import send_head
+pose = send_head.Pose()
+pose.turn(yaw=200, pitch=-95, roll=1.5, zoom=2)
+send_head.take_key(pose, '3')
+send_head.take_events(struct.pack('=IhBB', 0, 1, 129, 5), {}, pose)
+got = pose.datagram(True)
+assert got == struct.pack('>4sHHIIQ4f', b'PVHD', 1, 2, 1, 36, struct.unpack('>Q', got[16:24])[0], -160, -90, 1.5, 2), got.hex()
+PY
+
 # what cannot be
 exercise demo "$tmp/demo.pcap"
 refused() { # refused WHAT TEXT OPTION...

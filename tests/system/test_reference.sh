@@ -7,6 +7,8 @@ bare=("${bare[@]}" "${coarse[@]}")
 judges python3.numpy python3.OpenEXR python3.PIL python3.pyproj python3.scipy
 needs "writable /dev/shm" test -w /dev/shm
 needs "video: built without FFmpeg's libraries" has_video
+needs "projector: built without SDL2" has_projector
+export SDL_VIDEODRIVER=dummy # frames on a display that is none
 
 run help
 check "help: lists the topics" grep -qE '^products truth run\.json exr ' "$tmp/stdout"
@@ -58,12 +60,25 @@ while True:
 PY
 answers=$!
 senders+=($answers)
+# a head tracker that turns the eye of one of them
+free_port
+head_port=$port
+python3 -u - $head_port <<'PY' &
+import itertools, socket, struct, sys, time
+to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+for k in itertools.count():
+    pose = struct.pack('>4sHHIIQ4f', b'PVHD', 1, 2, k, k % 4, 10000 * k, k % 20 - 10, -5, 1, 1.25)
+    for octets in pose, b'none': to.sendto(octets, ('127.0.0.1', int(sys.argv[1])))
+    time.sleep(0.01)
+PY
+senders+=($!)
 # two live nodes, each with an exercise of its own, which send what they see; one radar waits for its signatures, the other
 # has a point for every entity
 for kind in truth sensor; do
     free_port
     radar=(--set radar.table="$tmp/radars.csv" --set radar.preset=search_ku --set radar.ground=false)
-    [ $kind = truth ] || radar+=(--set radar.given="$tmp/given.csv" --set publish.detections_port=$live_answers_port)
+    [ $kind = truth ] || radar+=(--set radar.given="$tmp/given.csv" --set publish.detections_port=$live_answers_port
+        --head 127.0.0.1:$head_port --projector lwir)
     node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 3 --no-png --bands lwir,radar --threads 1 \
         "${stream[@]}" "${radar[@]}" --latest \
         --set publish.files=false --set publish.dis=$kind --set exercise.listen_s=1 --record "$tmp/$kind.pcapng"

@@ -176,18 +176,18 @@ static json_t *taken_in_form(FieldAt *at)
 
 /* ---- the fields ---------------------------------------------------------------------------------- */
 
-#define IN_RUN(member)     FIELD_IN(run_of_record, Run, member)
-#define IN_RESULT(member)  FIELD_IN(run_result_of, SessionResult, member)
-#define IN_RENDER(member)  FIELD_IN(render_of, RenderCounters, member)
-#define IN_HEARD(member)   FIELD_IN(heard_of, DisCounters, member)
-#define OF_RESULT(member)  FIELD_MEMBER(SessionResult, member)
-#define OF_LIVE(member)    FIELD_MEMBER(LiveCounters, member)
-#define OF_CIGI(member)    FIELD_MEMBER(CigiNode, member)
-#define OF_ANSWERS(member) FIELD_MEMBER(AnswerCounters, member)
-#define OF_STREAM(member)  FIELD_MEMBER(StreamCounters, member)
+#define IN_RUN(member)       FIELD_IN(run_of_record, Run, member)
+#define IN_RESULT(member)    FIELD_IN(run_result_of, SessionResult, member)
+#define IN_RENDER(member)    FIELD_IN(render_of, RenderCounters, member)
+#define IN_HEARD(member)     FIELD_IN(heard_of, DisCounters, member)
+#define OF_RESULT(member)    FIELD_MEMBER(SessionResult, member)
+#define OF_LIVE(member)      FIELD_MEMBER(LiveCounters, member)
+#define OF_CIGI(member)      FIELD_MEMBER(CigiNode, member)
+#define OF_ANSWERS(member)   FIELD_MEMBER(AnswerCounters, member)
+#define OF_STREAM(member)    FIELD_MEMBER(StreamCounters, member)
 #define OF_PROJECTOR(member) FIELD_MEMBER(ProjectorCounters, member)
-#define OF_FLIPS(member)   FIELD_MEMBER(LatencyFigures, member)
-#define OF_RENDER(member)  FIELD_MEMBER(RenderCounters, member)
+#define OF_FLIPS(member)     FIELD_MEMBER(LatencyFigures, member)
+#define OF_RENDER(member)    FIELD_MEMBER(RenderCounters, member)
 
 static const Field pdu_rows[] = {
     {"TYPE", "", "", "when there were none", "well-formed PDUs of this type", FIELD_ELSEWHERE("integer")},
@@ -309,10 +309,11 @@ static const Field projector_rows[] = {
     {"dropped", "", "", "", "never shown: a newer one came before, or the window was gone", OF_PROJECTOR(dropped)},
     {"late", "", "", "", "of those shown, at whose flip a newer one was there", OF_PROJECTOR(late)},
     {"waited_out", "", "", "", "frames that were held up for all of projector.wait_ms", OF_PROJECTOR(waited_out)},
-    {"refresh_hz", "Hz", "", "when not known", "of the display", OF_PROJECTOR(refresh_hz), .unless_0 = true},
+    {"refresh_hz", "Hz", "", "when 0", "of the display; 0: not known", OF_PROJECTOR(refresh_hz), .unless_0 = true},
     {"after_render_ms", "ms", "", "without a flip", "from the end of rendering to the flip", .in = after_of,
      FIELD_OBJECT(flip_rows)},
-    {"interval_ms", "ms", "", "before the second flip", "from flip to flip", .in = interval_of, FIELD_OBJECT(flip_rows)},
+    {"interval_ms", "ms", "", "before the second flip", "from flip to flip", .in = interval_of,
+     FIELD_OBJECT(flip_rows)},
     {"off_refresh_ms", "ms", "", "when the refresh rate is not known",
      "how far that is from a whole number of refreshes", .in = off_of, FIELD_OBJECT(flip_rows)},
 };

@@ -1,5 +1,5 @@
-/* sensor/node/session/head_notes.h: poses of a head by which frames of a live node were made, noted in its recording, so that a
- * replay makes the same. A note is the datagram, and the time of the frame from which on it holds. */
+/* sensor/node/session/head_notes.h: poses of a head by which frames of a live node were made, noted in its recording,
+ * so that a replay makes the same. A note is the datagram, and the time of the frame from which on it holds. */
 #ifndef SENSOR_NODE_SESSION_HEAD_NOTES_H
 #define SENSOR_NODE_SESSION_HEAD_NOTES_H
 

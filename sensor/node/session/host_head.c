@@ -1,7 +1,7 @@
 /* sensor/node/session/host_head.c: an eye that a head tracker turns, on whatever carries it: an entity, or an observer.
  *
- * A pose holds from a frame's time on, and for it alone the tracker is asked; so frames follow from the poses and their times,
- * which the recording has. */
+ * A pose holds from a frame's time on, and for it alone the tracker is asked; so frames follow from the poses and their
+ * times, which the recording has. */
 #include "sensor/node/session/session_private.h"
 
 #include "entities/motion/dead_reckoning.h"
@@ -15,8 +15,8 @@ enum { notes_room = 60000000 };
 
 typedef struct HeadHost {
     HostMotion  motion;
-    HostMotion *under;  /* what carries the eye; its own */
-    HeadNotes  *played; /* poses of the recording that is played; NULL: live */
+    HostMotion *under;     /* what carries the eye; its own */
+    HeadNotes  *played;    /* poses of the recording that is played; NULL: live */
     bool        on_entity; /* else an observer carries it */
     HeadNote    now, before;
     int         poses; /* 0: none yet; 1: now; 2: before, too */
@@ -36,15 +36,17 @@ static void note_pose(HeadHost *h, const HeadNote *note)
     h->noted += strlen(text) + 1;
     shared->note(shared->user, text);
     if (h->noted > notes_room)
-        log_warn("head: the recording has no room for further poses: a replay holds the last one from here on; a new run "
-                 "records on");
+        log_warn(
+            "head: the recording has no room for further poses: a replay holds the last one from here on; a new run "
+            "records on");
 }
 
 /* The pose of the frame at t_s, of a live node: the newest that has come. */
 static void newest_pose(HeadHost *h, double t_s)
 {
     HeadNote note = {.t_s = t_s};
-    h->fresh = head_link_newest(&note.pose, h->motion.s->head) && (h->poses == 0 || note.pose.sequence != h->now.pose.sequence);
+    h->fresh = head_link_newest(&note.pose, h->motion.s->head) &&
+               (h->poses == 0 || note.pose.sequence != h->now.pose.sequence);
     if (!h->fresh) return;
     h->before = h->now;
     h->now = note;
@@ -63,7 +65,8 @@ static void played_pose(HeadHost *h, double t_s)
 
 /* ---- where it looks --------------------------------------------------------------------------------- */
 
-/* How fast it moves, by the sender's clock, of two poses in a row; 0 where they are too far apart, and of one that is held. */
+/* How fast it moves, by the sender's clock, of two poses in a row; 0 where they are too far apart, and of one that is
+ * held. */
 typedef struct HeadRate {
     double turn_dps[3]; /* of yaw, pitch, roll */
     double v_ecef_mps[3];
@@ -85,8 +88,7 @@ static HeadRate rate_of(const HeadHost *h)
     HeadRate            rate = {0};
     double              p_a[3], p_b[3];
     if (h->poses < 2 || !h->fresh || a->flags != b->flags || !(step_s > 0 && step_s <= longest_s)) return rate;
-    const double change_deg[3] = {b->yaw_deg - a->yaw_deg, b->pitch_deg - a->pitch_deg,
-                                  b->roll_deg - a->roll_deg};
+    const double change_deg[3] = {b->yaw_deg - a->yaw_deg, b->pitch_deg - a->pitch_deg, b->roll_deg - a->roll_deg};
     for (int k = 0; k < 3; k++) rate.turn_dps[k] = remainder(change_deg[k], 360) / step_s;
     if (b->flags & HEAD_PLACED && place_of(p_a, a) && place_of(p_b, b))
         for (int k = 0; k < 3; k++) rate.v_ecef_mps[k] = (p_b[k] - p_a[k]) / step_s;
@@ -109,9 +111,8 @@ static void axes_of(double r_ecef_from_axes[9], const HeadHost *h, const Eye *ca
         memcpy(r_ecef_from_enu, h->motion.s->shared->world->frame.r_ecef_from_enu, sizeof r_ecef_from_enu);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            r_ecef_from_axes[3 * i + k] =
-                relative ? carried->state.r_ecef_from_cam[3 * i + of_cam[k]]
-                         : (k == 2 ? -1 : 1) * r_ecef_from_enu[3 * i + of_enu[k]];
+            r_ecef_from_axes[3 * i + k] = relative ? carried->state.r_ecef_from_cam[3 * i + of_cam[k]]
+                                                   : (k == 2 ? -1 : 1) * r_ecef_from_enu[3 * i + of_enu[k]];
 }
 
 /* The camera since_s after the frame. */
@@ -212,8 +213,9 @@ Status session_host_head(HostMotion **host, Session *s)
     if (!s->shared->live) {
         const Status status = head_notes_read(&h->played, s->shared->notes);
         if (status != STATUS_OK || h->played) return status;
-        log_error("head: this recording holds no poses of a head: only those that `pitviper run --head` records as pcapng do; "
-                  "leave exercise.head out");
+        log_error(
+            "head: this recording holds no poses of a head: only those that `pitviper run --head` records as pcapng do; "
+            "leave exercise.head out");
         return STATUS_BAD_VALUE;
     }
     const size_t length = strlen(config->record.path);

@@ -28,9 +28,9 @@ typedef struct Projector {
     size_t           count; /* pixels */
     uint16_t        *level; /* [3][count] of planes */
     uint8_t         *shown; /* [3 count] of the display image */
-    DisplayWindow          *window;
+    DisplayWindow   *window;
     uint32_t         number; /* of the newest image */
-    pthread_mutex_t  lock; /* protects the following */
+    pthread_mutex_t  lock;   /* protects the following */
     Pending          pending[pending_most];
     LatencyHistogram after;
 } Projector;
@@ -69,7 +69,8 @@ static int levels_of_display(Projector *p, const Frame *frame)
     if (d->planes == 0) return 0;
     frame_display_quantise(p->shown, d, p->count, 8);
     for (size_t i = 0; i < p->count; i++)
-        for (int k = 0; k < d->planes; k++) p->level[(size_t)k * p->count + i] = p->shown[i * (size_t)d->planes + (size_t)k];
+        for (int k = 0; k < d->planes; k++)
+            p->level[(size_t)k * p->count + i] = p->shown[i * (size_t)d->planes + (size_t)k];
     return d->planes;
 }
 
@@ -199,14 +200,14 @@ Status consume_projector(Consumer **out, const ProjectorOf *of)
     if (p->source != OF_RADIANCE) p->consumer.wants = p->source == OF_COUNTS ? WANT_COUNTS : WANT_DISPLAY;
     if (status == STATUS_OK)
         status = display_window_open(&p->window, &(DisplayWindowOf){.width = config->sensor.width_px,
-                                                     .height = config->sensor.height_px,
-                                                     .display = config->projector.display,
-                                                     .size = config->projector.window,
-                                                     .scale = scale[config->projector.scale],
-                                                     .vsync = config->projector.vsync,
-                                                     .flipped = flipped,
-                                                     .dropped = dropped,
-                                                     .user = p});
+                                                                    .height = config->sensor.height_px,
+                                                                    .display = config->projector.display,
+                                                                    .size = config->projector.window,
+                                                                    .scale = scale[config->projector.scale],
+                                                                    .vsync = config->projector.vsync,
+                                                                    .flipped = flipped,
+                                                                    .dropped = dropped,
+                                                                    .user = p});
     if (status != STATUS_OK) {
         close_projector(&p->consumer);
         return status;

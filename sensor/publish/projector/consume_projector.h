@@ -1,5 +1,5 @@
-/* sensor/publish/projector/consume_projector.h: the consumer that shows one band of each frame on a display, through a table
- * of drive levels (etc/reference/projector.md). Of an image that comes while another waits the newer is shown. */
+/* sensor/publish/projector/consume_projector.h: the consumer that shows one band of each frame on a display, through a
+ * table of drive levels (etc/reference/projector.md). Of an image that comes while another waits the newer is shown. */
 #ifndef SENSOR_PUBLISH_PROJECTOR_CONSUME_PROJECTOR_H
 #define SENSOR_PUBLISH_PROJECTOR_CONSUME_PROJECTOR_H
 
@@ -7,8 +7,8 @@
 #include "sensor/settings/config.h"
 
 typedef struct ProjectorOf {
-    const Config      *config; /* projector..., the image's size; outlives the consumer */
-    unsigned           bands;  /* of the run */
+    const Config      *config;                 /* projector..., the image's size; outlives the consumer */
+    unsigned           bands;                  /* of the run */
     int                count_bits[BAND_COUNT]; /* of raw counts; 0: a band without a sensor has none */
     Latency           *latency;                /* of its frames: it enters its flips by itself; NULL: none is kept */
     ProjectorCounters *counters;               /* filled in by close */

@@ -1,5 +1,5 @@
-/* sensor/publish/projector/display_window.c: starts pitviper-projector, gives it images through shared memory, and takes what it says
- * of them. */
+/* sensor/publish/projector/display_window.c: starts pitviper-projector, gives it images through shared memory, and
+ * takes what it says of them. */
 #include "sensor/publish/projector/display_window.h"
 
 #include "sensor/publish/consumers/consumer.h"
@@ -17,20 +17,20 @@
 #include <unistd.h>
 
 struct DisplayWindow {
-    DisplayWindowOf         of;
-    pid_t            process; /* 0: there is none */
-    int              socket, memory;
-    WindowShared    *shared;
-    uint32_t         own; /* image to fill */
-    pthread_t        thread;
-    bool             started; /* the thread */
-    pthread_mutex_t  lock;    /* protects the following */
-    pthread_cond_t   said;
-    bool             opened, gone, closing;
-    uint32_t         flipped; /* number of the last one */
-    int64_t          flipped_ns;
+    DisplayWindowOf   of;
+    pid_t             process; /* 0: there is none */
+    int               socket, memory;
+    WindowShared     *shared;
+    uint32_t          own; /* image to fill */
+    pthread_t         thread;
+    bool              started; /* the thread */
+    pthread_mutex_t   lock;    /* protects the following */
+    pthread_cond_t    said;
+    bool              opened, gone, closing;
+    uint32_t          flipped; /* number of the last one */
+    int64_t           flipped_ns;
     ProjectorCounters counters;
-    LatencyHistogram interval, off;
+    LatencyHistogram  interval, off;
 };
 
 /* ---- start ---------------------------------------------------------------------------------------- */
@@ -44,7 +44,8 @@ static int spawn(pid_t *process, const char *program, int socket, int memory, co
     posix_spawnattr_t          attributes;
     sigset_t                   none;
     snprintf(display, sizeof display, "%d", of->display);
-    char *arguments[] = {(char *)"pitviper-projector", display, (char *)of->size, (char *)of->scale, (char *)(of->vsync ? "on" : "off"), NULL};
+    char *arguments[] = {(char *)"pitviper-projector",       display, (char *)of->size, (char *)of->scale,
+                         (char *)(of->vsync ? "on" : "off"), NULL};
     sigemptyset(&none);
     int error = posix_spawn_file_actions_init(&actions);
     if (error) return error;
@@ -139,9 +140,9 @@ static bool take(DisplayWindow *w, WindowMessage *m)
 
 static void *listen_to_it(void *user)
 {
-    DisplayWindow       *w = user;
-    WindowMessage m;
-    bool          there = true, told = false;
+    DisplayWindow *w = user;
+    WindowMessage  m;
+    bool           there = true, told = false;
     publish_urgent();
     while (there) {
         const ssize_t got = recv(w->socket, &m, sizeof m, 0);
@@ -162,7 +163,7 @@ static void *listen_to_it(void *user)
 #ifdef PITVIPER_SDL
 Status display_window_open(DisplayWindow **out, const DisplayWindowOf *of)
 {
-    char    program[4096];
+    char           program[4096];
     DisplayWindow *w = calloc(1, sizeof *w);
     if (!w) return STATUS_NO_MEMORY;
     *w = (DisplayWindow){.of = *of, .socket = -1, .memory = -1};
@@ -174,7 +175,8 @@ Status display_window_open(DisplayWindow **out, const DisplayWindowOf *of)
     pthread_condattr_destroy(&steady);
     int error = library_module(program, sizeof program, "pitviper-projector") ? start(w, program) : ENOENT;
     if (!error && !(w->started = publish_thread(&w->thread, listen_to_it, w))) error = EAGAIN;
-    if (error && error != ENOENT) log_error("projector: cannot start %s, which has the window: %s", program, strerror(error));
+    if (error && error != ENOENT)
+        log_error("projector: cannot start %s, which has the window: %s", program, strerror(error));
     pthread_mutex_lock(&w->lock);
     while (!error && !w->opened && !w->gone) pthread_cond_wait(&w->said, &w->lock);
     const bool opened = w->opened;
@@ -185,8 +187,9 @@ Status display_window_open(DisplayWindow **out, const DisplayWindowOf *of)
         return STATUS_OK;
     }
     if (!error)
-        log_error("projector: there is no window; DISPLAY names an X server, projector.display one of its displays, and "
-                  "without projector.band there is none");
+        log_error(
+            "projector: there is no window; DISPLAY names an X server, projector.display one of its displays, and "
+            "without projector.band there is none");
     display_window_close(w, NULL);
     return STATUS_IO;
 }

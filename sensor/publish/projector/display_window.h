@@ -1,5 +1,5 @@
-/* sensor/publish/projector/display_window.h: the program with a window on a display (pitviper-projector), seen from the node: it is given
- * images, shows the newest, and says when it was flipped.
+/* sensor/publish/projector/display_window.h: the program with a window on a display (pitviper-projector), seen from the
+ * node: it is given images, shows the newest, and says when it was flipped.
  *
  * One thread gives images; a thread of the window's own takes what it says. */
 #ifndef SENSOR_PUBLISH_PROJECTOR_DISPLAY_WINDOW_H
@@ -23,7 +23,8 @@ typedef struct DisplayWindowOf {
     void *user;
 } DisplayWindowOf;
 
-/* Waits until the window is there. STATUS_UNSUPPORTED, STATUS_IO, logged with what to do: built without SDL2; no display. */
+/* Waits until the window is there. STATUS_UNSUPPORTED, STATUS_IO, logged with what to do: built without SDL2; no
+ * display. */
 Status display_window_open(DisplayWindow **out, const DisplayWindowOf *of);
 /* The image to fill, [height][width] of 0x00RRGGBB. */
 uint32_t *display_window_fill(DisplayWindow *window);

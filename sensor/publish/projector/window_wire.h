@@ -1,9 +1,9 @@
-/* sensor/publish/projector/window_wire.h: what the node and the program with the window (pitviper-projector) share: images
- * in shared memory, of which the newest is shown, and messages over a socket.
+/* sensor/publish/projector/window_wire.h: what the node and the program with the window (pitviper-projector) share:
+ * images in shared memory, of which the newest is shown, and messages over a socket.
  *
  * Three images: one is filled, one is shown, and one waits. `waiting` names the third and whether it is fresh; the node
- * puts a filled one there, and the window takes it if it is fresh, both by exchanging it for their own. So neither waits
- * for the other, and the node learns of every image that was never taken: it gets it back fresh.
+ * puts a filled one there, and the window takes it if it is fresh, both by exchanging it for their own. So neither
+ * waits for the other, and the node learns of every image that was never taken: it gets it back fresh.
  *
  * The window writes what it did with an image, a message each; the node writes an octet for each image, so that the
  * window wakes up, and closes its end to end it. */
@@ -31,7 +31,8 @@ static inline size_t window_octets(int width, int height)
 }
 static inline uint32_t *window_image(WindowShared *shared, int width, int height, uint32_t image)
 {
-    return (uint32_t *)(void *)((unsigned char *)shared + window_header_octets + image * window_image_octets(width, height));
+    return (uint32_t *)(void *)((unsigned char *)shared + window_header_octets +
+                                image * window_image_octets(width, height));
 }
 
 typedef enum WindowEvent {

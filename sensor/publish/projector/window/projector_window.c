@@ -1,6 +1,7 @@
 /* sensor/publish/projector/window/projector_window.c: pitviper-projector: a window, or a whole display, that shows the
- * newest image in shared memory and says when it was flipped. The node starts it (sensor/publish/projector/display_window.c); it is
- * a program of its own since a window system that fails, or is slow, ends or holds up the program that it serves.
+ * newest image in shared memory and says when it was flipped. The node starts it
+ * (sensor/publish/projector/display_window.c); it is a program of its own since a window system that fails, or is slow,
+ * ends or holds up the program that it serves.
  *
  *     pitviper-projector DISPLAY WIDTHxHEIGHT|full one|whole|fit on|off      image size is in the shared memory */
 #include "sensor/publish/projector/window_wire.h"
@@ -96,8 +97,8 @@ static bool open_window(Shown *s, int display, const char *size, const char *sca
     if (SDL_GetDisplayBounds(display, &bounds) != 0) return false;
     if (full) width = bounds.w, height = bounds.h;
     if (!place(&s->place, s, width, height, scale))
-        return SDL_SetError("an image of %d x %d has no room on %d x %d: projector.scale: fit shows it smaller", s->width,
-                            s->height, width, height),
+        return SDL_SetError("an image of %d x %d has no room on %d x %d: projector.scale: fit shows it smaller",
+                            s->width, s->height, width, height),
                false;
     const int centred = (int)SDL_WINDOWPOS_CENTERED_DISPLAY(display);
     s->window = SDL_CreateWindow("Pitviper", centred, centred, width, height,
@@ -105,18 +106,21 @@ static bool open_window(Shown *s, int display, const char *size, const char *sca
     if (!s->window) return false;
     s->renderer = SDL_CreateRenderer(s->window, -1, vsync ? SDL_RENDERER_PRESENTVSYNC : 0);
     if (!s->renderer) return false;
-    s->texture = SDL_CreateTexture(s->renderer, SDL_PIXELFORMAT_ARGB8888, SDL_TEXTUREACCESS_STREAMING, s->width, s->height);
+    s->texture =
+        SDL_CreateTexture(s->renderer, SDL_PIXELFORMAT_ARGB8888, SDL_TEXTUREACCESS_STREAMING, s->width, s->height);
     if (!s->texture || SDL_SetTextureBlendMode(s->texture, SDL_BLENDMODE_NONE) != 0 ||
-        SDL_SetTextureScaleMode(s->texture, SDL_ScaleModeNearest) != 0 || SDL_GetRendererOutputSize(s->renderer, &width, &height) != 0)
+        SDL_SetTextureScaleMode(s->texture, SDL_ScaleModeNearest) != 0 ||
+        SDL_GetRendererOutputSize(s->renderer, &width, &height) != 0)
         return false;
     if (!place(&s->place, s, width, height, scale)) return SDL_SetError("the window became too small"), false;
     SDL_DisplayMode  mode = {0};
     SDL_RendererInfo info = {0};
     SDL_GetCurrentDisplayMode(display, &mode);
     SDL_GetRendererInfo(s->renderer, &info);
-    snprintf(text, sizeof text, "display %d of %s, %d x %d at %d Hz; %s renderer%s; the image is %d x %d at column %d, row %d",
-             display, SDL_GetCurrentVideoDriver(), width, height, mode.refresh_rate, info.name ? info.name : "unknown",
-             !vsync                                       ? ""
+    snprintf(text, sizeof text,
+             "display %d of %s, %d x %d at %d Hz; %s renderer%s; the image is %d x %d at column %d, row %d", display,
+             SDL_GetCurrentVideoDriver(), width, height, mode.refresh_rate, info.name ? info.name : "unknown",
+             !vsync                                   ? ""
              : info.flags & SDL_RENDERER_PRESENTVSYNC ? ", which says that it keeps step with the refresh"
                                                       : ", which keeps no step with the refresh",
              s->place.w, s->place.h, s->place.x, s->place.y);
