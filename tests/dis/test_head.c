@@ -1,5 +1,5 @@
 /* Poses of a head tracker: octets written out by hand, both ways; what is refused, each by its reason; sequences that
- * go past the end of 32 bits and begin anew. */
+ * go past the end of 32 bits and begin anew. labels: threads */
 #include "tests/check.h"
 
 #include "dis/head/head_link.h"

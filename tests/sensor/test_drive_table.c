@@ -60,6 +60,36 @@ static void every_count_has_its_level(void **state)
     drive_table_free(&t);
 }
 
+/* Rows that crowd in places, against a search row by row. */
+static void rows_in_any_place(void **state)
+{
+    (void)state;
+    enum { rows = 600 };
+    static char   text[rows * 48 + 32];
+    static double value[rows], level[rows];
+    DriveTable    t;
+    size_t        n = (size_t)snprintf(text, sizeof text, "radiance,level\n");
+    for (int i = 0; i < rows; i++) {
+        const double last = i > 0 ? value[i - 1] : -5;
+        value[i] = last + pow(10, -6 + 7 * random_uniform(3, 1, 0, (uint64_t)i));
+        level[i] = floor(65535 * random_uniform(3, 2, 0, (uint64_t)i));
+        n += (size_t)snprintf(text + n, sizeof text - n, "%.17g,%g\n", value[i], level[i]);
+    }
+    assert_int_equal(read_text(&t, text, 65535), STATUS_OK);
+    for (int k = 0; k < 20000; k++) {
+        const int    near = (int)(rows * random_uniform(3, 3, 0, (uint64_t)k));
+        const double share = 1.1 * random_uniform(3, 4, 0, (uint64_t)k) - 0.05;
+        const double v = k % 3 == 0 ? value[near] : value[0] + (value[rows - 1] - value[0]) * share;
+        int          low = 0;
+        while (low + 1 < rows && value[low + 1] <= v) low++;
+        double exact = level[low];
+        if (low + 1 < rows && v > value[0])
+            exact += (v - value[low]) * (level[low + 1] - level[low]) / (value[low + 1] - value[low]);
+        assert_true(fabs(drive_level(&t, v) - exact) <= 0.5 + 1e-6);
+    }
+    drive_table_free(&t);
+}
+
 static void what_is_wrong_is_refused(void **state)
 {
     (void)state;
@@ -69,6 +99,7 @@ static void what_is_wrong_is_refused(void **state)
         {"radiance,level\n0,10\n", "row"},
         {"level\n1\n2\n", "radiance and counts"},
         {"radiance,counts,level\n0,0,1\n1,1,2\n", "not both"},
+        {"radiance,level\n0,10\n1e-31,20\n", "above that of the row before"},
         {"radiance,level\n1,10\n1,20\n", "above that of the row before"},
         {"radiance,level\n1,10\n0,20\n", "above that of the row before"},
         {"counts,level\n1,10\n0,20\n", "above that of the row before"},
@@ -91,7 +122,7 @@ static void what_is_wrong_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(levels_are_linear_between_rows),
-                                       cmocka_unit_test(every_count_has_its_level),
+                                       cmocka_unit_test(every_count_has_its_level), cmocka_unit_test(rows_in_any_place),
                                        cmocka_unit_test(what_is_wrong_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

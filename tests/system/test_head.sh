@@ -39,13 +39,17 @@ for reason in magic version flags range; do
 done
 check "each datagram is taken or refused" [ $((old + size + $(counted magic) + $(counted version) + $(counted flags) + $(counted range))) = $((2 * taken)) ]
 
-replay "$tmp/head.pcapng" "$tmp/again" --causal --port 0 "${few[@]}" --no-files --threads 2 --head $head --to "$(time_of "$tmp/head" '$')"
+kept=$(grep '"head":' "$tmp/head/truth.jsonl" | sed -n 3p | grep -oE '^\{"frame":[0-9]+' | grep -oE '[0-9]+$')
+replay "$tmp/head.pcapng" "$tmp/again" --save-frame "$kept" --causal --port 0 "${few[@]}" --no-files --threads 2 --head $head --to "$(time_of "$tmp/head" '$')"
 check "its recording replays" [ $code = 0 ] || cat "$tmp/stderr"
 made=$(numbered "$tmp/head" | wc -l)
 check "to the same bits" agree "$tmp/head" "$tmp/again" $((made - 1))
 turned() { grep -oE '"frame":[0-9]+|"head":\{[^}]*\}|"ecef_from_cam":\[[^]]*\]' "$1/truth.jsonl" | paste -sd' ' | sed 's/"frame"/\n&/g'; }
 same_eyes() { comm -13 <(turned "$tmp/again" | sort) <(turned "$tmp/head" | sort) >"$tmp/other"; ! grep -q frame "$tmp/other"; }
 check "and to the same eyes" same_eyes
+
+run frame "$tmp/again/frame_$(printf '%06d' "$kept").pvf" --out "$tmp/frame"
+check "a saved frame renders to the same planes" [ $code = 0 ] || cat "$tmp/stderr"
 
 # its twin: without poses the frames are others
 replay "$tmp/head.pcapng" "$tmp/plain" --causal --port 0 "${few[@]}" --no-files --threads 2 --to "$(time_of "$tmp/head" '$')"

@@ -60,7 +60,7 @@ while True:
 PY
 answers=$!
 senders+=($answers)
-# a head tracker that turns the eye of one of them
+# a third, whose eye a head tracker turns, and that shows what it sees
 free_port
 head_port=$port
 python3 -u - $head_port <<'PY' &
@@ -72,13 +72,18 @@ for k in itertools.count():
     time.sleep(0.01)
 PY
 senders+=($!)
+free_port
+node look --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 3 --bands lwir --threads 1 --no-files --host observer \
+    --set exercise.listen_s=1 --head 127.0.0.1:$head_port --projector lwir
+heard_by look 'listening on'
+"$pitviper" exercise demo --set duration_s=900 --send 127.0.0.1:$port >"$tmp/look_sender.out" 2>&1 &
+senders+=($!)
 # two live nodes, each with an exercise of its own, which send what they see; one radar waits for its signatures, the other
 # has a point for every entity
 for kind in truth sensor; do
     free_port
     radar=(--set radar.table="$tmp/radars.csv" --set radar.preset=search_ku --set radar.ground=false)
-    [ $kind = truth ] || radar+=(--set radar.given="$tmp/given.csv" --set publish.detections_port=$live_answers_port
-        --head 127.0.0.1:$head_port --projector lwir)
+    [ $kind = truth ] || radar+=(--set radar.given="$tmp/given.csv" --set publish.detections_port=$live_answers_port)
     node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 3 --no-png --bands lwir,radar --threads 1 \
         "${stream[@]}" "${radar[@]}" --latest \
         --set publish.files=false --set publish.dis=$kind --set exercise.listen_s=1 --record "$tmp/$kind.pcapng"
@@ -134,7 +139,7 @@ check "a record" [ $code = 0 ] || cat "$tmp/stdout"
 cp -r "$tmp/work/case/out" "$tmp/case/out"
 "$pitviper" inspect "$tmp/demo.pcap" --pdus tsv --full | head -n 200 >"$tmp/full.tsv"
 "$pitviper" inspect "$tmp/demo.pcap" --pdus tsv | head -n 200 >"$tmp/short.tsv"
-for kind in truth sensor; do
+for kind in truth sensor look; do
     ended $kind
     check "live, $kind" [ $code = 0 ] || cat "$tmp/$kind.out"
 done
@@ -143,7 +148,7 @@ wait "${senders[@]}" 2>/dev/null
 
 variant=$(find "$tmp/sweep" -name variant.json -printf '%h\n')
 python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$tmp/village" --run "$tmp/cigi" --run "$variant" --run "$tmp/truth" \
-    --run "$tmp/sensor" --sweep "$tmp/sweep" --score "$tmp/score" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
+    --run "$tmp/sensor" --run "$tmp/look" --sweep "$tmp/sweep" --score "$tmp/score" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
     --capture "$tmp/truth.pcapng" --live "$tmp/truth" --capture "$tmp/sensor.pcapng" --streams "${#stream[@]}" || fail "products and their reference"
 
 # its twins: a field without a row, a row without a field, a type, an absence, lines that do not run

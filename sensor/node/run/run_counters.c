@@ -253,14 +253,14 @@ static const Field cigi_rows[] = {
 };
 
 static const Field head_drop_rows[] = {
-    {"REASON", "", "", "when there were none", "datagrams", .item = next_head_drop, .kind = FIELD_OF_COUNT,
+    {"MISTAKE", "", "", "when there were none", "datagrams", .item = next_head_drop, .kind = FIELD_OF_COUNT,
      .unless_0 = true},
 };
 
 static const Field head_rows[] = {
     {"taken", "", "", "", "poses that were well-formed and newer than those before",
      FIELD_MEMBER(HeadCounters, datagrams[HEAD_GOOD])},
-    {"refused", "", "", "", "by reason: size, magic, version, flags, range, old", FIELD_OBJECT(head_drop_rows)},
+    {"refused", "", "", "", "by reason", FIELD_OBJECT(head_drop_rows)},
 };
 
 static const Field fault_rows[] = {

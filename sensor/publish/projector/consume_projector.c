@@ -11,8 +11,9 @@ static const char in_ledger[] = "projector";
 /* What drive levels are made from. */
 typedef enum Source { OF_DISPLAY, OF_COUNTS, OF_RADIANCE } Source;
 
-/* Images whose flip is not known yet: one waits, one is shown, one is on its way. */
-enum { pending_most = 8 };
+/* Images whose flip is not known yet: three at most are on their way, but what is said of them may be taken late on a
+ * busy machine. */
+enum { pending_most = 256 };
 typedef struct Pending {
     uint32_t number; /* 0: none */
     uint64_t key;    /* in the ledger */

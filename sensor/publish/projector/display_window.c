@@ -224,6 +224,7 @@ void display_window_close(DisplayWindow *w, ProjectorCounters *counters)
     if (w->socket >= 0) shutdown(w->socket, SHUT_WR); /* it ends, and what it says until then is taken */
     if (w->process > 0) end_process(w->process);
     if (w->started) pthread_join(w->thread, NULL);
+    if (w->shared && w->shared->waiting & window_fresh) w->counters.dropped++; /* the last one was never taken */
     latency_figures(&w->counters.interval, &w->interval);
     latency_figures(&w->counters.off, &w->off);
     if (counters) *counters = w->counters;

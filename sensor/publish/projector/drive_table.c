@@ -5,6 +5,8 @@
 
 #include <stdlib.h>
 
+static const double least_step = 1e-30; /* between values: slopes are finite, in numbers that are not denormal */
+
 typedef struct Row {
     double radiance, counts, level;
 } Row;
@@ -45,7 +47,7 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     const bool radiance = table_rows_has(rows, "radiance"), counts = table_rows_has(rows, "counts");
     if (radiance == counts) return table_rows_lack(rows, "one of the columns radiance and counts, and not both");
     const double value = counts ? row->counts : row->radiance;
-    if (number > 0 && !(value > r->table.value[number - 1]))
+    if (number > 0 && !(value - r->table.value[number - 1] >= least_step))
         return table_rows_refuse(rows, number, counts ? "counts" : "radiance", "above that of the row before");
     if (row->level > r->most)
         return table_rows_refuse(rows, number, "level", "at most %d, with projector.bits: %d", r->most,
@@ -59,11 +61,33 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     return STATUS_OK;
 }
 
+/* The bin of a value between the first and the last; it never falls as the value rises. */
+static int bin_of(const DriveTable *t, double value)
+{
+    const double low = t->value[0], high = t->value[t->rows - 1];
+    return (int)fmin((value - low) / (high - low) * drive_bins, drive_bins - 1);
+}
+
+/* Slopes, and where to look for a value: most of its rows are passed over by one division. */
+static Status index_rows(DriveTable *t)
+{
+    t->slope = calloc((size_t)t->rows, sizeof *t->slope);
+    if (!t->slope) return STATUS_NO_MEMORY;
+    for (int i = 0; i + 1 < t->rows; i++)
+        t->slope[i] = (t->level[i + 1] - t->level[i]) / (t->value[i + 1] - t->value[i]);
+    for (int i = 0, bin = 0; bin <= drive_bins; bin++) {
+        while (i + 1 < t->rows && bin_of(t, t->value[i + 1]) < bin) i++;
+        t->of_bin[bin] = i;
+    }
+    return STATUS_OK;
+}
+
 Status drive_table_read(DriveTable *out, const char *path, int most)
 {
     Reading r = {.most = most};
     Row     row;
     Status  status = table_each(&format, path, &row, sizeof row, take_row, &r);
+    if (status == STATUS_OK) status = index_rows(&r.table);
     if (status == STATUS_OK && r.table.counts) {
         r.table.of_count = malloc(65536 * sizeof *r.table.of_count);
         if (!r.table.of_count) status = STATUS_NO_MEMORY;
@@ -78,26 +102,25 @@ void drive_table_free(DriveTable *t)
 {
     free(t->value);
     free(t->level);
+    free(t->slope);
     free(t->of_count);
     *t = (DriveTable){0};
 }
 
 uint16_t drive_level(const DriveTable *t, double value)
 {
-    int low = 0, high = t->rows - 1; /* the value is in low .. high, or outside of all */
-    if (!(value > t->value[0])) high = low;
-    else if (value >= t->value[high]) low = high;
+    const int last = t->rows - 1;
+    if (!(value > t->value[0])) return (uint16_t)floor(t->level[0] + 0.5);
+    if (value >= t->value[last]) return (uint16_t)floor(t->level[last] + 0.5);
+    const int bin = bin_of(t, value);
+    int       low = t->of_bin[bin], high = t->of_bin[bin + 1] + 1; /* the value is from low on, below high */
+    if (high > last) high = last;
     while (high - low > 1) {
         const int middle = low + (high - low) / 2;
         if (t->value[middle] <= value) low = middle;
         else high = middle;
     }
-    double level = t->level[low];
-    if (high > low) {
-        const double share = (value - t->value[low]) / (t->value[high] - t->value[low]);
-        level += share * (t->level[high] - t->level[low]);
-    }
-    return (uint16_t)floor(level + 0.5);
+    return (uint16_t)floor(t->level[low] + t->slope[low] * (value - t->value[low]) + 0.5);
 }
 
 void drive_levels_of_radiance(uint16_t *out, const DriveTable *t, const float *radiance, size_t count)

@@ -9,14 +9,16 @@
 
 #include "pitviper.h"
 
+enum { drive_rows_most = 65536, drive_bins = 1024 };
+
 typedef struct DriveTable {
     bool      counts; /* of raw counts; else of radiance */
     int       rows;
-    double   *value, *level; /* [rows] */
-    uint16_t *of_count;      /* [65536] level of each count; NULL: of radiance */
+    double   *value, *level;          /* [rows] */
+    double   *slope;                  /* [rows] of the level, to the next row */
+    int       of_bin[drive_bins + 1]; /* of values in a bin: the last row before all of them */
+    uint16_t *of_count;               /* [65536] level of each count; NULL: of radiance */
 } DriveTable;
-
-enum { drive_rows_most = 65536 };
 
 /* most: of a level, 255 or 65535. STATUS_BAD_VALUE, STATUS_IO, logged with file, line and what is accepted. */
 Status drive_table_read(DriveTable *out, const char *path, int most);
