@@ -76,6 +76,8 @@ made=$(grep -c . "$tmp/slow/truth.jsonl")
 shown=$(counted "$tmp/slow" shown) dropped=$(counted "$tmp/slow" dropped)
 check "some are shown, and some are not: $shown, $dropped of $made" [ "$shown" -ge 5 -a "$dropped" -ge 20 ]
 check "every frame is one or the other, but for what it died with" [ $((made - shown - dropped)) -ge 0 -a $((made - shown - dropped)) -le 2 ]
+after=$(run_json "$tmp/slow" | grep -oE '"after_render_ms":\{[^}]*"count":[0-9]+' | grep -oE '[0-9]+$')
+check "each flip is of an image that was given: $after of $shown" [ "$after" = "$shown" ]
 flips=$(grep -c '"projector":[0-9.]' "$tmp/slow/truth.jsonl")
 check "the time of each flip is in the ledger: $flips of $shown" [ "$flips" -ge 5 -a "$flips" -le "$shown" ]
 

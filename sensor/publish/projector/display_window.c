@@ -258,7 +258,7 @@ bool display_window_show(DisplayWindow *w, uint32_t number)
     if (gone) return false;
     w->shared->number[w->own] = number;
     const uint32_t before = __atomic_exchange_n(&w->shared->waiting, w->own | window_fresh, __ATOMIC_ACQ_REL);
-    w->own = before % window_images; /* whatever the other program has written there */
+    w->own = (before & ~(uint32_t)window_fresh) % window_images; /* whatever the other program has written there */
     if (before & window_fresh) drop(w, w->shared->number[w->own]);
     send(w->socket, &look, 1, MSG_DONTWAIT | MSG_NOSIGNAL); /* full: it has enough to wake up */
     return true;

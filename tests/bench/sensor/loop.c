@@ -75,6 +75,7 @@ typedef struct Loop {
     char        folder[temp_path_size], exercise[temp_path_size], log[temp_path_size], memory[48];
     int         frames;
     double      lat_deg, lon_deg, height_m, yaw_deg, pitch_deg;
+    double      processor_s; /* of the node, a frame */
     double      time_s[STAGES][frames_most];
 } Loop;
 
@@ -180,7 +181,23 @@ static void turn(Loop *l, const Answer *a)
     l->pitch_deg = clamp(l->pitch_deg - share * hfov_deg * ((a->row + 0.5) / pixels - 0.5), -most_deg, most_deg);
 }
 
-static Status fly(Loop *l)
+/* Processor time that a process has had, s, by /proc; NaN: unknown. */
+static double processor_s(pid_t process)
+{
+    char               path[48], text[1024];
+    unsigned long long user, system;
+    snprintf(path, sizeof path, "/proc/%d/stat", (int)process);
+    FILE        *file = fopen(path, "r");
+    const size_t got = file ? fread(text, 1, sizeof text - 1, file) : 0;
+    if (file) fclose(file);
+    text[got] = 0;
+    const char *at = strrchr(text, ')'); /* behind the name, which may hold anything: field 3 */
+    if (!at || sscanf(at + 1, " %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %llu %llu", &user, &system) != 2)
+        return NAN;
+    return (double)(user + system) / (double)sysconf(_SC_CLK_TCK);
+}
+
+static Status fly(Loop *l, pid_t node)
 {
     uint32_t ig_frame = 0, host_frame = 0;
     int64_t  heartbeat_ns = 0, answered_ns = 0;
@@ -191,6 +208,7 @@ static Status fly(Loop *l)
         if (!send_pose(l, ++host_frame, ig_frame, start_s + step_s * (i + warm_up))) return STATUS_IO;
         if (!wait_for(&ig_frame, &heartbeat_ns, &a, &answered_ns, l)) return STATUS_IO;
         turn(l, &a);
+        if (i == 0) l->processor_s = processor_s(node);
         if (i < 0) continue;
         const int64_t last_ns = heartbeat_ns > answered_ns ? heartbeat_ns : answered_ns;
         const int64_t at[STAGES] = {sent_ns,    a.begun_ns,    a.posed_ns,  a.rendered_ns, a.written_ns,
@@ -198,6 +216,7 @@ static Status fly(Loop *l)
         for (int s = 0; s < WHOLE; s++) l->time_s[s][i] = 1e-9 * (double)(at[s + 1] - at[s]);
         l->time_s[WHOLE][i] = 1e-9 * (double)(last_ns - sent_ns);
     }
+    l->processor_s = (processor_s(node) - l->processor_s) / (l->frames - 1);
     return STATUS_OK;
 }
 
@@ -250,7 +269,7 @@ static Status run_all(Loop *l)
         const pid_t recogniser = fork();
         if (recogniser == 0) recognise(l->memory, l->host_port + 2);
         const pid_t child = node_start(node, nowhere, nowhere);
-        if (child > 0 && recogniser > 0) status = fly(l);
+        if (child > 0 && recogniser > 0) status = fly(l, child);
         if (child > 0) kill(child, SIGINT);
         if (child > 0) node_finish(child, silent_s, &unused);
         if (recogniser > 0) kill(recogniser, SIGTERM);
@@ -299,6 +318,16 @@ static void add_rows(Loop *l)
     }
 }
 
+static void add_processor(const Loop *l)
+{
+    char what[160];
+    snprintf(what, sizeof what, "a host's loop, 256 x 256, %s: processor time of the node, a frame", l->of->name);
+    BenchRow row = bench_row(what);
+    row.median = row.best = l->processor_s;
+    row.unit = "s";
+    bench_add(l->bench, &row);
+}
+
 static Status run_case(Bench *bench, const Case *of, int index)
 {
     Loop *l = calloc(1, sizeof *l);
@@ -325,6 +354,7 @@ static Status run_case(Bench *bench, const Case *of, int index)
     bench_progress(bench, of->name);
     if (status == STATUS_OK) status = run_all(l);
     if (status == STATUS_OK) add_rows(l);
+    if (status == STATUS_OK) add_processor(l);
     else log_error("bench: loop: %s: %s", of->name, status_name(status));
     if (l->cigi >= 0) close(l->cigi);
     if (l->answers >= 0) close(l->answers);
