@@ -258,10 +258,10 @@ enum { config_paths_size = 4096 };
         "CSV table from radiance or raw counts to drive levels; empty: the display image's values, with 16 bits raw " \
         "counts") \
     ROW(INT, projector., bits, 8, 8, 16, "", \
-        "bits of a drive level, 8 or 16. 16: red is the high octet, green the low one, blue 0") \
+        "bits of a drive level, 8, or 16, of which red has the high octet, green the low one") \
     ROW(INT, projector., display, 0, 0, 15, "", "which display, as the window system counts them") \
     ROW(TEXT, projector., window, "full", 16, "", \
-        "full: the whole display; WIDTHxHEIGHT: a window of that size in the middle of it") \
+        "the whole display (full), or a window in its middle (WIDTHxHEIGHT)") \
     ROW(CHOICE, projector., scale, PROJECTOR_WHOLE, ProjectorScale, \
         (PROJECTOR_ONE, "one")(PROJECTOR_WHOLE, "whole")(PROJECTOR_FIT, "fit"), \
         "the image in the middle, each of its pixels one of the display; a square of the largest whole number of these " \
