@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 bare=("${bare[@]}" "${coarse[@]}")
-judges Xvfb python3.numpy python3.OpenEXR python3.PIL
+judges Xvfb python3.numpy python3.OpenEXR python3.PIL python3.pyproj python3.scipy
 needs "projector: built without SDL2" has_projector
 unset DISPLAY WAYLAND_DISPLAY SDL_VIDEODRIVER
 export SDL_RENDER_DRIVER=software XDG_RUNTIME_DIR=$tmp
@@ -50,6 +50,12 @@ check "a replay that waits for each flip" [ $code = 0 ] || cat "$tmp/stderr"
 check "has the same bits" same_hashes "$tmp/plain" "$tmp/seen"
 check "and shows all of them" [ "$(counted "$tmp/seen" shown)" = "$(grep -c . "$tmp/seen/truth.jsonl")" ]
 check "none is dropped, none is late" [ "$(counted "$tmp/seen" dropped) $(counted "$tmp/seen" late) $(counted "$tmp/seen" waited_out)" = "0 0 0" ]
+
+# in step with a CIGI host, whose Start of Frame waits for the flip
+DISPLAY=$screen python3 tests/tools/cigi_flight.py "$pitviper" "$tmp/demo.pcap" "$tmp/cigi" "${bare[@]}" --size 48x36 --bands lwir --threads 2 \
+    --projector lwir --set projector.wait_ms=10000 >"$tmp/cigi.out" 2>&1
+check "in step with a host" [ $? = 0 ] || cat "$tmp/cigi.out"
+check "every frame is flipped before the next is asked for" [ "$(counted "$tmp/cigi" shown) $(counted "$tmp/cigi" dropped) $(counted "$tmp/cigi" waited_out)" = "$(grep -c . "$tmp/cigi/truth.jsonl") 0 0" ]
 
 # a display that stands still: frames go on; images that were never shown are counted; then it goes on, and then it dies
 DISPLAY=$screen "$pitviper" replay "$tmp/demo.pcap" --out "$tmp/slow" "${bare[@]}" --size 48x36 --bands lwir --no-files --rate 20 --speed 1 \
