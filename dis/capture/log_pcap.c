@@ -156,7 +156,7 @@ static bool read_interface(DisCapture *c, size_t octets)
 /* Adds a comment to the notes. One that does not fit, or is cut, is left out: notes are not part of the packets. */
 static void take_note(DisCapture *c, const uint8_t *text, size_t octets)
 {
-    enum { notes_most = 1 << 24 };
+    enum { notes_most = 1 << 26 };
     const size_t needed = c->note_octets + octets + 2;
     if (needed > notes_most) return;
     if (needed > c->note_capacity) {

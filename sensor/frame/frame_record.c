@@ -96,6 +96,16 @@ static const void *next_clutter(FieldAt *at, int i)
     return i < r->clutter_count ? &r->clutter[i] : NULL;
 }
 
+static const void *head_of(const void *of)
+{
+    const FrameRecord *r = of;
+    return r->turned ? &r->head : NULL;
+}
+
+static json_t *head_relative(FieldAt *at) { return json_boolean(((const HeadPose *)at->of)->flags & HEAD_RELATIVE); }
+static json_t *head_sequence(FieldAt *at) { return json_integer(((const HeadPose *)at->of)->sequence); }
+static json_t *head_buttons(FieldAt *at) { return json_integer(((const HeadPose *)at->of)->buttons); }
+
 /* ---- its error ----------------------------------------------------------------------------------- */
 
 /* rms over the image as a share of the band's mean, and in kelvin about that mean. The mean of the pseudo-radar is that
@@ -318,6 +328,17 @@ static const Field latency_rows[] = {
     {"consumers", "", "", "", "by consumer of the frame", FIELD_OBJECT(consumer_rows)},
 };
 
+static const Field head_rows[] = {
+    {"sequence", "", "", "", "of the datagram", FIELD_GET("integer", head_sequence), FIELD_EXACT},
+    {"relative", "", "", "", "to the body of the host, of an observer to its line to the aim; else to north and level",
+     FIELD_GET("boolean", head_relative), FIELD_EXACT},
+    {"yaw_deg", "deg", "", "", "to the right, as it was sent", FIELD_MEMBER(HeadPose, yaw_deg), FIELD_WITHIN(1e-6, 0)},
+    {"pitch_deg", "deg", "", "", "then up", FIELD_MEMBER(HeadPose, pitch_deg), FIELD_WITHIN(1e-6, 0)},
+    {"roll_deg", "deg", "", "", "then the right side down", FIELD_MEMBER(HeadPose, roll_deg), FIELD_WITHIN(1e-6, 0)},
+    {"zoom", "", "", "", "factor of the focal length", FIELD_MEMBER(HeadPose, zoom), FIELD_WITHIN(1e-6, 0)},
+    {"buttons", "", "", "", "a bit each", FIELD_GET("integer", head_buttons), FIELD_EXACT},
+};
+
 static const Field frame_rows[] = {
     {"frame", "", "from 0", "", "number of the frame, as in the names of its files", OF_FRAME(frame), FIELD_EXACT},
     {"time_s", "s", "exercise time", "", "instant of the frame", OF_FRAME(time_s), FIELD_WITHIN(1e-6, 0),
@@ -325,6 +346,8 @@ static const Field frame_rows[] = {
     {"frame_sha256", "", "", "when hashes are not requested", "SHA-256 of all planes before they are encoded",
      OF_FRAME(frame_sha256), .channel = FIELD_APART},
     {"host", "", "", "", "the entity that carries the sensor", .item = the_host, FIELD_OBJECT(host_rows)},
+    {"head", "", "", "without exercise.head, and before its first pose", "the pose that turned the sensor",
+     .in = head_of, FIELD_OBJECT(head_rows), .newer = true},
     {"sun", "", "", "", "direction of the sun", .in = sun_of, FIELD_OBJECT(sun_rows), .channel = FIELD_SUN},
     {"sensors", "", "from 0", "", "one: all bands share the optics and the instant", .item = the_sensor,
      FIELD_OBJECTS(sensor_rows)},

@@ -15,12 +15,7 @@ enum {
     edge_first = -2,
     edge_fine = fine_decade / edge_decade
 };
-
-typedef struct Histogram {
-    uint64_t count, left_out;
-    double   max_ms;
-    uint64_t bin[fine_count];
-} Histogram;
+_Static_assert((int)fine_count == (int)latency_bins, "bins of a histogram");
 
 typedef struct Entry {
     uint64_t key; /* 0: none */
@@ -31,13 +26,13 @@ typedef struct Entry {
 } Entry;
 
 struct Latency {
-    pthread_mutex_t lock;
-    uint64_t        keys;
-    int             consumers;
-    char            name[latency_consumers_max][latency_name_size];
-    int             expected[latency_consumers_max];
-    Entry           entry[latency_frames];
-    Histogram       stage[LATENCY_STAGE_COUNT], consumer[latency_consumers_max];
+    pthread_mutex_t  lock;
+    uint64_t         keys;
+    int              consumers;
+    char             name[latency_consumers_max][latency_name_size];
+    int              expected[latency_consumers_max];
+    Entry            entry[latency_frames];
+    LatencyHistogram stage[LATENCY_STAGE_COUNT], consumer[latency_consumers_max];
 };
 
 const char *const latency_stage_name[LATENCY_STAGE_COUNT] = {"arrival_to_pose", "pose_to_render", "render", "display"};
@@ -76,7 +71,7 @@ void latency_expect(Latency *l, const char *name)
 
 /* ---- statistics -------------------------------------------------------------------------------------- */
 
-static void count_one(Histogram *h, double ms)
+void latency_count(LatencyHistogram *h, double ms)
 {
     if (isnan(ms)) return;
     const double at = ms > 0 ? floor((log10(ms) - fine_first) * fine_decade) + 1 : 0;
@@ -86,7 +81,7 @@ static void count_one(Histogram *h, double ms)
 }
 
 /* Returns the upper limit of the bin with the nearest rank. */
-static double percentile(const Histogram *h, double share)
+static double percentile(const LatencyHistogram *h, double share)
 {
     const uint64_t rank = (uint64_t)fmax(1, ceil(share * (double)h->count - 1e-9));
     uint64_t       sum = 0;
@@ -97,7 +92,7 @@ static double percentile(const Histogram *h, double share)
     return h->max_ms;
 }
 
-static void summarise(LatencyFigures *out, const Histogram *h)
+void latency_figures(LatencyFigures *out, const LatencyHistogram *h)
 {
     *out = (LatencyFigures){
         .count = h->count, .left_out = h->left_out, .median_ms = NAN, .p95_ms = NAN, .p99_ms = NAN, .max_ms = NAN};
@@ -118,10 +113,10 @@ void latency_summary(LatencySummary *out, Latency *l)
     memset(out, 0, sizeof *out);
     for (int i = 0; i < latency_edges; i++) out->edge_ms[i] = pow(10, edge_first + (double)i / edge_decade);
     pthread_mutex_lock(&l->lock);
-    for (int i = 0; i < LATENCY_STAGE_COUNT; i++) summarise(&out->stage[i], &l->stage[i]);
+    for (int i = 0; i < LATENCY_STAGE_COUNT; i++) latency_figures(&out->stage[i], &l->stage[i]);
     out->consumers = l->consumers;
     memcpy(out->name, l->name, sizeof out->name);
-    for (int i = 0; i < l->consumers; i++) summarise(&out->consumer[i], &l->consumer[i]);
+    for (int i = 0; i < l->consumers; i++) latency_figures(&out->consumer[i], &l->consumer[i]);
     pthread_mutex_unlock(&l->lock);
 }
 
@@ -158,7 +153,7 @@ uint64_t latency_begin(Latency *l, const LatencyTimes *t)
                  .stage_ms = {span_ms(t->arrived_s, t->posed_s), span_ms(t->posed_s, t->render_s),
                               span_ms(t->render_s, t->rendered_s), NAN}};
     for (int i = 0; i < LATENCY_STAGE_COUNT; i++)
-        if (i != LATENCY_ARRIVAL_TO_POSE || t->fresh) count_one(&l->stage[i], e->stage_ms[i]);
+        if (i != LATENCY_ARRIVAL_TO_POSE || t->fresh) latency_count(&l->stage[i], e->stage_ms[i]);
     for (int i = 0; i < l->consumers; i++) {
         e->done_ms[i] = NAN;
         e->waits[i] = l->expected[i];
@@ -189,20 +184,25 @@ void latency_displayed(Latency *l, uint64_t key, double rendered_s)
     pthread_mutex_lock(&l->lock);
     Entry *e = find(l, key);
     if (e) e->stage_ms[LATENCY_DISPLAY] = ms;
-    count_one(&l->stage[LATENCY_DISPLAY], ms);
+    latency_count(&l->stage[LATENCY_DISPLAY], ms);
     pthread_mutex_unlock(&l->lock);
 }
 
 void latency_done(Latency *l, uint64_t key, double rendered_s, const char *name)
 {
+    latency_done_at(l, key, rendered_s, name, wall_clock_s());
+}
+
+void latency_done_at(Latency *l, uint64_t key, double rendered_s, const char *name, double done_s)
+{
     const int    i = index_of(l, name); /* names do not change any more */
-    const double ms = 1e3 * fmax(0, wall_clock_s() - rendered_s);
+    const double ms = 1e3 * fmax(0, done_s - rendered_s);
     if (i < 0) return;
     pthread_mutex_lock(&l->lock);
     Entry *e = find(l, key);
     if (settle(e, i)) {
         if (e) e->done_ms[i] = ms;
-        count_one(&l->consumer[i], ms);
+        latency_count(&l->consumer[i], ms);
     }
     pthread_mutex_unlock(&l->lock);
 }

@@ -12,7 +12,8 @@ enum {
     latency_consumers_max = 24,
     latency_name_size = 24,
     latency_frames = 16,
-    latency_edges = 31 /* 0.01 ms .. 10 s, five a decade */
+    latency_edges = 31, /* 0.01 ms .. 10 s, five a decade */
+    latency_bins = 902  /* of a fine histogram: 100 a decade */
 };
 
 typedef enum LatencyStage {
@@ -48,6 +49,17 @@ typedef struct LatencyFigures {
     uint64_t histogram[latency_edges + 1];      /* below the first edge; between edges; from the last on */
 } LatencyFigures;
 
+/* Times counted in fine bins; all 0: none yet. */
+typedef struct LatencyHistogram {
+    uint64_t count, left_out;
+    double   max_ms;
+    uint64_t bin[latency_bins];
+} LatencyHistogram;
+
+/* Counts one time; NaN: none. */
+void latency_count(LatencyHistogram *histogram, double ms);
+void latency_figures(LatencyFigures *out, const LatencyHistogram *histogram);
+
 /* The latencies of all frames so far. */
 typedef struct LatencySummary {
     double         edge_ms[latency_edges];
@@ -71,6 +83,8 @@ uint64_t latency_begin(Latency *latency, const LatencyTimes *times);
 void latency_displayed(Latency *latency, uint64_t key, double rendered_s);
 /* A consumer of that name has returned, now; or did not get the frame. Also of frames no longer kept. */
 void latency_done(Latency *latency, uint64_t key, double rendered_s, const char *name);
+/* The same of one that was done at wall_clock_s done_s, and reports it later. */
+void latency_done_at(Latency *latency, uint64_t key, double rendered_s, const char *name, double done_s);
 void latency_left_out(Latency *latency, uint64_t key, const char *name);
 /* Whether no consumer of this frame is outstanding. True also for one no longer kept. */
 bool latency_complete(Latency *latency, uint64_t key);

@@ -2,6 +2,7 @@
 #ifndef SENSOR_FRAME_PUBLISH_COUNTERS_H
 #define SENSOR_FRAME_PUBLISH_COUNTERS_H
 
+#include "sensor/frame/latency_private.h"
 #include "pitviper.h"
 
 /* ---- answers received from a recogniser: datagrams by form and reason ----------------------------- */
@@ -64,9 +65,21 @@ typedef struct StreamCounters {
     uint64_t sent, refused, no_route, lost;
 } StreamCounters;
 
+/* Images of a window on a display (sensor/publish/projector/). */
+typedef struct ProjectorCounters {
+    uint64_t       shown, dropped; /* flipped; never shown: a newer one came before, or the window was gone */
+    uint64_t       late;           /* of those shown, at whose flip a newer one was there */
+    uint64_t       waited_out;     /* frames that were held up for all of projector.wait_ms */
+    double         refresh_hz;     /* of the display; 0: not known */
+    char           what[200];      /* where it is shown and by what */
+    LatencyFigures interval, off;  /* between flips; how far that is from a whole number of refreshes */
+    LatencyFigures after;          /* from the end of rendering to the flip */
+} ProjectorCounters;
+
 typedef struct SentCounters {
-    StreamCounters stream;
-    uint64_t       frames_unnamed; /* written into a ring whose name in /dev/shm was gone or another's by then */
+    StreamCounters    stream;
+    ProjectorCounters projector;
+    uint64_t          frames_unnamed; /* written into a ring whose name in /dev/shm was gone or another's by then */
 } SentCounters;
 
 #endif

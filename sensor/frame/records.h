@@ -7,6 +7,7 @@
 #ifndef SENSOR_FRAME_RECORDS_H
 #define SENSOR_FRAME_RECORDS_H
 
+#include "dis/head/head_pose.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/traces/effect_history.h"
 #include "sensor/frame/publish_counters.h"
@@ -45,7 +46,9 @@ typedef struct FrameRecord {
     const RadarError     *radar_error;  /* likewise */
     const GroundPoint    *footprint;    /* [FOOTPRINT_COUNT]; NULL: not requested */
     const RadarFrame     *radar;        /* NULL: none */
-    const char           *given_up;     /* of quality, by a live node, separated by commas; NULL: nothing */
+    bool                  turned;       /* the eye, by a head tracker: head */
+    HeadPose              head;
+    const char           *given_up; /* of quality, by a live node, separated by commas; NULL: nothing */
 } FrameRecord;
 
 /* Writes one line and flushes it. STATUS_IO when it cannot be written. */

@@ -23,6 +23,8 @@ static const char *answer_fault(int i)
 
 static const char *flaw(int i) { return i < CIGI_DROP_COUNT ? cigi_drop_name((CigiDrop)i) : NULL; }
 
+static const char *mistake(int i) { return i + 1 < HEAD_DROPS ? head_drop_name[i + 1] : NULL; }
+
 static const char *form(int i) { return i < ANSWER_FORMS ? answer_form_name[i] : NULL; }
 
 static const char *latency(int i) { return i < LATENCY_STAGE_COUNT ? latency_stage_name[i] : NULL; }
@@ -34,6 +36,7 @@ static const ReferenceWord words[] = {
     {"TYPE", "the PDU type's number: 1 Entity State, 2 Fire, 3 Detonation ...", NULL, NULL},
     {"REASON", "one of", drop, NULL},
     {"FLAW", "one of", flaw, NULL},
+    {"MISTAKE", "one of", mistake, NULL},
     {"PACKET", "the CIGI packet's id: 3 Conformal Clamped Entity Control, 4 Component Control ...", NULL, NULL},
     {"FORM", "one of", form, NULL},
     {"FAULT", "one of", answer_fault, NULL},

@@ -21,6 +21,7 @@ typedef struct Config {
     struct { CONFIG_NETWORK(SETTING_MEMBER) } network;
     struct { CONFIG_NODE(SETTING_MEMBER) } node;
     struct { CONFIG_PUBLISH(SETTING_MEMBER) } publish;
+    struct { CONFIG_PROJECTOR(SETTING_MEMBER) } projector;
     struct { CONFIG_RECORD(SETTING_MEMBER) } record;
     struct { CONFIG_CACHE(SETTING_MEMBER) } cache;
     struct { CONFIG_WEATHER(SETTING_MEMBER) } weather;
@@ -87,7 +88,7 @@ const char *config_difference(const Config *a, const Config *b);
 /* `key = value` of those that were given, a line each, indented. */
 void config_write_given(FILE *to, const Config *config);
 /* Writes the canonical text, which is hashed as config_sha256: every key and value, in table order. Keys that change no
- * plane (network, publish, record, cache, port, time span) have their defaults in it. */
+ * plane (network, publish, projector, record, cache, port, time span) have their defaults in it. */
 void config_text(char *out, size_t out_size, const Config *config);
 /* The defaults, and of `from` the keys that words name: with blanks between, each a key or the beginning of some,
  * `weather.`; with - before it: left out again. Nothing is given (config_given) in it: what is made by it follows from

@@ -3,10 +3,12 @@
 #include "sensor/settings/config_private.h"
 
 #include "dis/cigi/cigi_link.h"
+#include "dis/head/head_link.h"
 #include "dis/pdu/pdu.h"
 #include "dis/capture/recorder.h"
 #include "pitviper_channels.h"
 #include "sensor/settings/aim_offset.h"
+#include "sensor/settings/projector_choice.h"
 #include "sensor/settings/publish_choice.h"
 #include "terrain/ground/placed.h"
 
@@ -372,6 +374,17 @@ static bool exercise_good(const Config *config)
                   config_where(config, "exercise.cigi"), config->exercise.host);
         good = false;
     }
+    if (*config->exercise.head && !head_address_good(config->exercise.head)) {
+        log_error(
+            "config: %sexercise.head: '%s' is not ADDRESS:PORT with a numeric address, for example 127.0.0.1:5010",
+            config_where(config, "exercise.head"), config->exercise.head);
+        good = false;
+    }
+    if (*config->exercise.head && *config->exercise.cigi) {
+        log_error("config: %sexercise.head: the host of exercise.cigi turns the eye already; leave one of them out",
+                  config_where(config, "exercise.head"));
+        good = false;
+    }
     if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {
         log_error("config: %sexercise.aim: '%s' is not site:application:entity, for example 1:3001:82",
                   config_where(config, "exercise.aim"), config->exercise.aim);
@@ -425,5 +438,6 @@ Status config_check(const Config *config)
     good &= publish_video_check(config) == STATUS_OK;
     const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);
     good &= publish_memory_check(config, sensor) == STATUS_OK;
+    good &= projector_check(config) == STATUS_OK;
     return good ? STATUS_OK : STATUS_BAD_VALUE;
 }

@@ -161,6 +161,7 @@ void config_text(char *out, size_t out_size, const Config *config)
     Config       hashed = *config;
     hashed.network = plain.network;
     hashed.publish = plain.publish;
+    hashed.projector = plain.projector;
     hashed.record = plain.record;
     hashed.cache = plain.cache;
     hashed.exercise.port = plain.exercise.port;

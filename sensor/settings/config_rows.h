@@ -10,7 +10,8 @@ enum { config_paths_size = 4096 };
 /* clang-format off */
 #define CONFIG_ROWS(ROW) \
     CONFIG_SENSOR(ROW) CONFIG_DETECTOR(ROW) CONFIG_RADAR(ROW) CONFIG_EXERCISE(ROW) CONFIG_FLIGHT(ROW) CONFIG_NETWORK(ROW) \
-    CONFIG_NODE(ROW) CONFIG_PUBLISH(ROW) CONFIG_RECORD(ROW) CONFIG_WEATHER(ROW) CONFIG_HEAT(ROW) CONFIG_TERRAIN(ROW) \
+    CONFIG_NODE(ROW) CONFIG_PUBLISH(ROW) CONFIG_PROJECTOR(ROW) CONFIG_RECORD(ROW) CONFIG_WEATHER(ROW) CONFIG_HEAT(ROW) \
+    CONFIG_TERRAIN(ROW) \
     CONFIG_OBSERVER(ROW) CONFIG_MODELS(ROW) CONFIG_ENTITIES(ROW) CONFIG_QUALITY(ROW) CONFIG_CACHE(ROW) CONFIG_TOP(ROW)
 
 #define CONFIG_SENSOR(ROW) \
@@ -169,7 +170,10 @@ enum { config_paths_size = 4096 };
     ROW(INT, exercise., cigi_port, 8005, 1, 65535, "", "UDP port on which that host is listened to") \
     ROW(INT, exercise., cigi_view, 0, 0, 65535, "", "view of that host that is the eye") \
     ROW(PATH, exercise., cigi_types, "", 1024, \
-        "table from that host's entity types to entity types and forces; empty: cigi_types.csv")
+        "table from that host's entity types to entity types and forces; empty: cigi_types.csv") \
+    ROW(TEXT, exercise., head, "", 72, "", \
+        "ADDRESS:PORT, numeric, on which a head tracker's poses turn the eye (etc/reference/head.md); of a replay: those " \
+        "of its recording; empty: none")
 
 #define CONFIG_FLIGHT(ROW) \
     ROW(TEXT, flight., missile, "", 31, "", \
@@ -244,7 +248,7 @@ enum { config_paths_size = 4096 };
         "targets with a smaller snr in a band, whatever its sign, are ignore regions of that band's images in " \
         "coco.json (iscrowd)") \
     ROW(BOOL, publish., truth, true, \
-        "write truth.jsonl and hash every frame; false, in `run` and `replay --speed X` only: neither is " \
+        "write truth.jsonl and hash every frame; false, in `run`, `replay --speed X` and with a CIGI host only: neither is " \
         "computed, and truth planes only if another product has them") \
     ROW(BOOL, publish., latest, false, "keep latest/BAND.png, the newest display of each band, replaced as a whole") \
     ROW(PATH, publish., video, "", config_paths_size, \
@@ -279,6 +283,26 @@ enum { config_paths_size = 4096 };
     ROW(INT, publish., detections_port, 0, 0, 65535, "", \
         "UDP port on loopback that receives a recogniser's answers (PVDETECT, JSON or MISB ST 0903), for answers.jsonl " \
         "and metadata; 0: none")
+
+#define CONFIG_PROJECTOR(ROW) \
+    ROW(TEXT, projector., band, "", 16, "", \
+        "band that is shown on a display of this machine, a scene projector's: optical, mwir, lwir, radar, or a channel " \
+        "in the place of one; empty: none") \
+    ROW(PATH, projector., table, "", 1024, \
+        "CSV table from radiance or raw counts to drive levels; empty: the display image's values, with 16 bits raw " \
+        "counts") \
+    ROW(INT, projector., bits, 8, 8, 16, "", \
+        "bits of a drive level, 8, or 16, of which red has the high octet, green the low one") \
+    ROW(INT, projector., display, 0, 0, 15, "", "which display, as the window system counts them") \
+    ROW(TEXT, projector., window, "full", 16, "", \
+        "the whole display (full), or a window in its middle (WIDTHxHEIGHT)") \
+    ROW(CHOICE, projector., scale, PROJECTOR_WHOLE, ProjectorScale, \
+        (PROJECTOR_ONE, "one")(PROJECTOR_WHOLE, "whole")(PROJECTOR_FIT, "fit"), \
+        "the image in the middle, each of its pixels one of the display; a square of the largest whole number of these " \
+        "a side; or as large as there is room, by nearest neighbours") \
+    ROW(SWITCH, projector., vsync, true, "on|off", "frames are flipped at the display's refresh; off: at once") \
+    ROW(INT, projector., wait_ms, 0, 0, 10000, "ms", \
+        "how long a frame is held up at most until it is flipped, as a host in step (exercise.cigi) may want; 0: never")
 
 #define CONFIG_RECORD(ROW) \
     ROW(PATH, record., path, "", 1024, "pcapng file to which `run` records all received datagrams; empty: none")

@@ -84,6 +84,10 @@ static const struct Row {
      "fly a missile of this row of etc/missiles.csv from flight.from at\nexercise.aim, and send what others must know of it"},
     {"sight", KEY, IN_BOTH, "flight.sight", "WHAT",
      "what guides it: truth, recogniser, radar, operator (default: truth)"},
+    {"head", KEY, IN_RUN, "exercise.head", "ADDRESS:PORT",
+     "where a head tracker, or gamepad, says how the eye is turned"},
+    {"head", KEY, IN_REPLAY, "exercise.head", "ADDRESS:PORT",
+     "the eye is turned as the recording of `run --head` says"},
     {"causal", KEY, IN_REPLAY, "exercise.causal=true", NULL,
      "use only what had been received by the time of each frame and each\n"
      "choice: the frames of `pitviper run`, to the bit"},
@@ -108,6 +112,7 @@ static const struct Row {
      "udp://HOST:PORT: live video with metadata (MPEG-TS), one port per band"},
     {"memory", KEY, IN_BOTH, "publish.memory", "NAME",
      "a ring of frames in shared memory, for a recogniser on this machine"},
+    {"projector", KEY, IN_BOTH, "projector.band", "BAND", "one band on a display, the whole of it (projector.window)"},
     {"latest", KEY, IN_BOTH, "publish.latest=true", NULL, "DIR/latest/BAND.png: the newest display of each band"},
     {"sweep", SWEEP, IN_REPLAY, NULL, "FILE",
      "one run for each combination of the settings in a YAML file, in folders\n"

@@ -151,6 +151,15 @@ static const BenchSuite suites[] = {
      .help = "a live node with shared memory and video: when frames are there, how many are left out",
      .run = bench_network_publish,
      .reads = "Times are from the node's own latency ledger, from the end of rendering; error: 99 % of the frames."},
+    {.name = "loop",
+     .room = "sensor",
+     .help =
+         "from pose to pose: a CIGI host, the frame, a recogniser's answer through shared memory and UDP, 256 x 256 "
+         "on bare ground",
+     .run = bench_loop,
+     .reads =
+         "Times are of a loop in lockstep of three processes on this machine; the stages are one after another, and error "
+         "is what 99 % of the frames keep. Other load on the machine decides them: its average is in the table."},
     {.name = "skip",
      .room = "sensor",
      .help = "what each exact skip saves, in the scene where it saves most",

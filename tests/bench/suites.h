@@ -78,6 +78,7 @@ Status bench_town_import(Bench *bench);       /* town_import.c: towns of files, 
 Status bench_woods_check(const Bench *bench); /* its options */
 Status bench_network_live(Bench *bench);      /* a live node, and a process that sends an exercise to it */
 Status bench_network_publish(Bench *bench);   /* shared memory and video of a live node, by its latency ledger */
+Status bench_loop(Bench *bench);              /* a CIGI host, a node and a recogniser, in step */
 Status bench_skip(Bench *bench);              /* skip_frames.c: the time that each exact skip saves */
 Status bench_precision(Bench *bench);         /* frames, models and detectors; precision.h has its parts */
 Status bench_stability_detector(Bench *bench);

@@ -63,6 +63,11 @@ network)
     some_have_limits
     rows "IPv4: datagrams" "IPv4: bundles" "IPv4: arrival to taken" "IPv4: most" recorder "live node: ready" \
         "live node: reports heard" "live node: arrival to pose" "live node: frame time to published" "live node: memory" ;;
+loop)
+    for case in "default quality" "one ray a pixel"; do
+        rows "a host's loop, 256 x 256, $case: pose sent to work begun" "$case: light, rendering" "$case: rendered to in shared memory" \
+            "$case: to taken by the recogniser" "$case: answer sent to received" "$case: pose to the next pose"
+    done ;;
 crowd) ;;
 precision/terrain)
     tunables "Earth to local frame" "latitude. longitude. height" "geoid between posts" "the sun's place" "powers of two" \

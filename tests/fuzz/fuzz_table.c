@@ -21,6 +21,7 @@
 #include "render/scattering/clutter/clutter_table_private.h"
 #include "render/scattering/paths/ground_bounce.h"
 #include "sensor/detector/preset.h"
+#include "sensor/publish/projector/drive_table.h"
 #include "sensor/radar/radar_preset.h"
 
 #include <stdlib.h>
@@ -51,7 +52,11 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
                                        "radar/things.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
-    switch (index % (names + 7)) {
+    switch (index % (names + 9)) {
+    case names + 8:
+        return fuzz_seed_text(out, "radiance,level\n-1e3,0\n0,65535\n2.5,7\n");
+    case names + 7:
+        return fuzz_seed_text(out, "counts,level\n0,255\n100,12.5\n65535,0\n");
     case names + 6:
         return fuzz_seed_text(out, "wavelength_um,response\n3.6,0\n3.8,1\n4.7,1\n4.9,0\n");
     case names + 5:
@@ -72,7 +77,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     default:
         break;
     }
-    FILE *file = etc_path(path, sizeof path, name[index % (names + 7)]) ? fopen(path, "rb") : NULL;
+    FILE *file = etc_path(path, sizeof path, name[index % (names + 9)]) ? fopen(path, "rb") : NULL;
     if (!file) return 0;
     const size_t size = fread(out, 1, fuzz_seed_octets, file);
     fclose(file);
@@ -127,6 +132,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     (void)channels_check(path);
     (void)scenery_clutter_check(path);
+    DriveTable levels;
+    for (int most = 255; most <= 65535; most += 65280)
+        if (drive_table_read(&levels, path, most) == STATUS_OK) {
+            if (!(levels.rows >= 2 && levels.rows <= drive_rows_most)) abort();
+            for (double value = -1e5; value < 1e5; value += 1.3e3)
+                if (drive_level(&levels, value) > most) abort();
+            if (drive_level(&levels, NAN) > most || (levels.counts && levels.of_count[65535] > most)) abort();
+            drive_table_free(&levels);
+        }
     Missile missile;
     int     missiles;
     if (missile_read_all(&missile, 1, &missiles, path) == STATUS_OK) {

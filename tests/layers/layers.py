@@ -38,6 +38,7 @@ LIBRARIES = (
     ('GeographicLib/*', 'terrain/*.cpp'), ('gdal*', 'terrain/elevation/reader/*'),
     ('cpl_*', 'terrain/elevation/reader/*'), ('ogr_*', 'terrain/elevation/reader/*'), ('erfa.h', 'terrain/*'),
     ('OpenImageIO/*', 'sensor/publish/images/image_module.cpp'), ('OpenEXR/*', 'sensor/publish/images/exr_module.cpp'),
+    ('SDL.h', 'sensor/publish/projector/window/*'),
     ('png.h', 'sensor/publish/images/png_file.c'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
     ('jansson.h', 'sensor/frame/*'), ('jansson.h', 'sensor/publish/*'), ('jansson.h', 'entities/import/gltf*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep/sweep_file.c'),

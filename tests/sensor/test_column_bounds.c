@@ -22,6 +22,7 @@
 #include "render/scattering/signatures/given_signature.h"
 #include "terrain/from_files/culture_import_private.h"
 #include "sensor/detector/preset.h"
+#include "sensor/publish/projector/drive_table.h"
 #include "sensor/quality/quality.h"
 #include "sensor/radar/radar_preset.h"
 #include "terrain/detail/detail.h"
@@ -157,6 +158,13 @@ static Status read_catalog(const char *path)
     if (status == STATUS_OK) catalog_close(c);
     return status;
 }
+static Status read_drive(const char *path)
+{
+    DriveTable   t;
+    const Status status = drive_table_read(&t, path, 65535);
+    if (status == STATUS_OK) drive_table_free(&t);
+    return status;
+}
 static Status read_given_heat(const char *path)
 {
     GivenHeat   *g = NULL;
@@ -240,6 +248,7 @@ static const struct Reader {
     {"trees_enu", read_trees, "@,x_m,y_m,height_m\n@,1,2,5\n"},
     {"weather", read_weather, "@,unix_s,air_temp_k\n@,0,280\n"},
     {"weather_air", read_weather, "@,unix_s\n@,0\n"},
+    {"drive_levels", read_drive, "@,counts\n@,0\n0,1\n"},
     {"given_heat", read_given_heat, "@,entity,part,t_s,temp_k\n@,*,*,0,300\n"},
     {"signature", read_signature, "@,x_m,y_m,z_m,hh_dbsm,vv_dbsm\n@,0,0,0,0,0\n"},
     {"signature_look", read_signature, "@,az_deg,el_deg,f_ghz,hh_dbsm,vv_dbsm\n@,0,0,10,0,0\n"},

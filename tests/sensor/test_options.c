@@ -13,6 +13,8 @@ static const char *const samples[][2] = {
     {"cigi", "127.0.0.1:8004"},
     {"fly", "ir_ag"},
     {"sight", "radar"},
+    {"head", "127.0.0.1:5010"},
+    {"projector", "lwir"},
     {"out", "elsewhere"},
     {"bands", "lwir"},
     {"size", "64x48"},

@@ -68,6 +68,12 @@ has_video() {
     "$pitviper" check "$tmp/video.yaml"
 }
 
+# has_projector: this program was built with SDL2
+has_projector() {
+    echo 'projector: {band: lwir}' >"$tmp/projector.yaml"
+    "$pitviper" check "$tmp/projector.yaml"
+}
+
 # Most tests are of other things than plants, buildings and heat, which cost seconds a run: bare ground, warmed up in few steps,
 # unless their options say otherwise. Tests of heat or of radiances have $full in place of $bare.
 full=(--set terrain.woods=off --set terrain.buildings=off --set terrain.clutter=0)

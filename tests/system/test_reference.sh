@@ -7,6 +7,8 @@ bare=("${bare[@]}" "${coarse[@]}")
 judges python3.numpy python3.OpenEXR python3.PIL python3.pyproj python3.scipy
 needs "writable /dev/shm" test -w /dev/shm
 needs "video: built without FFmpeg's libraries" has_video
+needs "projector: built without SDL2" has_projector
+export SDL_VIDEODRIVER=dummy # frames on a display that is none
 
 run help
 check "help: lists the topics" grep -qE '^products truth run\.json exr ' "$tmp/stdout"
@@ -58,6 +60,24 @@ while True:
 PY
 answers=$!
 senders+=($answers)
+# a third, whose eye a head tracker turns, and that shows what it sees
+free_port
+head_port=$port
+python3 -u - $head_port <<'PY' &
+import itertools, socket, struct, sys, time
+to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+for k in itertools.count():
+    pose = struct.pack('>4sHHIIQ4f', b'PVHD', 1, 2, k, k % 4, 10000 * k, k % 20 - 10, -5, 1, 1.25)
+    for octets in pose, b'none': to.sendto(octets, ('127.0.0.1', int(sys.argv[1])))
+    time.sleep(0.01)
+PY
+senders+=($!)
+free_port
+node look --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 3 --bands lwir --threads 1 --no-files --host observer \
+    --set exercise.listen_s=1 --head 127.0.0.1:$head_port --projector lwir
+heard_by look 'listening on'
+"$pitviper" exercise demo --set duration_s=900 --send 127.0.0.1:$port >"$tmp/look_sender.out" 2>&1 &
+senders+=($!)
 # two live nodes, each with an exercise of its own, which send what they see; one radar waits for its signatures, the other
 # has a point for every entity
 for kind in truth sensor; do
@@ -119,7 +139,7 @@ check "a record" [ $code = 0 ] || cat "$tmp/stdout"
 cp -r "$tmp/work/case/out" "$tmp/case/out"
 "$pitviper" inspect "$tmp/demo.pcap" --pdus tsv --full | head -n 200 >"$tmp/full.tsv"
 "$pitviper" inspect "$tmp/demo.pcap" --pdus tsv | head -n 200 >"$tmp/short.tsv"
-for kind in truth sensor; do
+for kind in truth sensor look; do
     ended $kind
     check "live, $kind" [ $code = 0 ] || cat "$tmp/$kind.out"
 done
@@ -128,7 +148,7 @@ wait "${senders[@]}" 2>/dev/null
 
 variant=$(find "$tmp/sweep" -name variant.json -printf '%h\n')
 python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$tmp/village" --run "$tmp/cigi" --run "$variant" --run "$tmp/truth" \
-    --run "$tmp/sensor" --sweep "$tmp/sweep" --score "$tmp/score" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
+    --run "$tmp/sensor" --run "$tmp/look" --sweep "$tmp/sweep" --score "$tmp/score" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
     --capture "$tmp/truth.pcapng" --live "$tmp/truth" --capture "$tmp/sensor.pcapng" --streams "${#stream[@]}" || fail "products and their reference"
 
 # its twins: a field without a row, a row without a field, a type, an absence, lines that do not run

@@ -49,9 +49,9 @@ Status run_measure_machine(Run *run)
 
 Status run_prepare(Run *run)
 {
-    if (!run->options.config.publish.truth && !clock_on_wall(run->clock)) {
+    if (!run->options.config.publish.truth && !clock_on_wall(run->clock) && !*run->options.config.exercise.cigi) {
         log_error(
-            "%s: publish.truth: false is for `run` and `replay --speed X`; a replay at full speed always has truth",
+            "%s: publish.truth: false is for `run`, `replay --speed X` and `--cigi`; a replay at full speed always has truth",
             options_command(&run->options));
         return STATUS_BAD_VALUE;
     }

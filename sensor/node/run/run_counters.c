@@ -14,6 +14,18 @@ static const void *live_of(const void *of) { return ((const RunRecord *)of)->run
 
 static const void *cigi_of(const void *of) { return ((const RunRecord *)of)->run->cigi; }
 
+static const void *head_of(const void *of)
+{
+    const RunRecord *r = of;
+    return r->run->live && *run_config_of(r)->exercise.head ? &r->end->result->head : NULL;
+}
+
+static const void *next_head_drop(FieldAt *at, int i)
+{
+    const HeadCounters *c = at->of;
+    return i < HEAD_DROPS ? field_keyed(at, i == HEAD_GOOD ? "" : head_drop_name[i], &c->datagrams[i]) : NULL;
+}
+
 /* of: CigiNode. */
 static const void *next_cigi_drop(FieldAt *at, int i)
 {
@@ -41,6 +53,18 @@ static const void *streams_of(const void *of)
     const RunRecord *r = of;
     return *run_config_of(r)->publish.stream ? &r->end->result->sent.stream : NULL;
 }
+
+static const void *projector_of(const void *of)
+{
+    const RunRecord *r = of;
+    return *run_config_of(r)->projector.band ? &r->end->result->sent.projector : NULL;
+}
+
+/* Figures of a projector's flips; NULL: there are none. */
+static const void *some(const LatencyFigures *figures) { return figures->count > 0 ? figures : NULL; }
+static const void *interval_of(const void *of) { return some(&((const ProjectorCounters *)of)->interval); }
+static const void *off_of(const void *of) { return some(&((const ProjectorCounters *)of)->off); }
+static const void *after_of(const void *of) { return some(&((const ProjectorCounters *)of)->after); }
 
 /* NULL: it was never ready. */
 static const void *made_ready(const void *of)
@@ -152,16 +176,18 @@ static json_t *taken_in_form(FieldAt *at)
 
 /* ---- the fields ---------------------------------------------------------------------------------- */
 
-#define IN_RUN(member)     FIELD_IN(run_of_record, Run, member)
-#define IN_RESULT(member)  FIELD_IN(run_result_of, SessionResult, member)
-#define IN_RENDER(member)  FIELD_IN(render_of, RenderCounters, member)
-#define IN_HEARD(member)   FIELD_IN(heard_of, DisCounters, member)
-#define OF_RESULT(member)  FIELD_MEMBER(SessionResult, member)
-#define OF_LIVE(member)    FIELD_MEMBER(LiveCounters, member)
-#define OF_CIGI(member)    FIELD_MEMBER(CigiNode, member)
-#define OF_ANSWERS(member) FIELD_MEMBER(AnswerCounters, member)
-#define OF_STREAM(member)  FIELD_MEMBER(StreamCounters, member)
-#define OF_RENDER(member)  FIELD_MEMBER(RenderCounters, member)
+#define IN_RUN(member)       FIELD_IN(run_of_record, Run, member)
+#define IN_RESULT(member)    FIELD_IN(run_result_of, SessionResult, member)
+#define IN_RENDER(member)    FIELD_IN(render_of, RenderCounters, member)
+#define IN_HEARD(member)     FIELD_IN(heard_of, DisCounters, member)
+#define OF_RESULT(member)    FIELD_MEMBER(SessionResult, member)
+#define OF_LIVE(member)      FIELD_MEMBER(LiveCounters, member)
+#define OF_CIGI(member)      FIELD_MEMBER(CigiNode, member)
+#define OF_ANSWERS(member)   FIELD_MEMBER(AnswerCounters, member)
+#define OF_STREAM(member)    FIELD_MEMBER(StreamCounters, member)
+#define OF_PROJECTOR(member) FIELD_MEMBER(ProjectorCounters, member)
+#define OF_FLIPS(member)     FIELD_MEMBER(LatencyFigures, member)
+#define OF_RENDER(member)    FIELD_MEMBER(RenderCounters, member)
 
 static const Field pdu_rows[] = {
     {"TYPE", "", "", "when there were none", "well-formed PDUs of this type", FIELD_ELSEWHERE("integer")},
@@ -227,6 +253,17 @@ static const Field cigi_rows[] = {
     {"skipped", "", "", "", "packets that are not read, by id", FIELD_OBJECT(cigi_skipped_rows)},
 };
 
+static const Field head_drop_rows[] = {
+    {"MISTAKE", "", "", "when there were none", "datagrams", .item = next_head_drop, .kind = FIELD_OF_COUNT,
+     .unless_0 = true},
+};
+
+static const Field head_rows[] = {
+    {"taken", "", "", "", "poses that were well-formed and newer than those before",
+     FIELD_MEMBER(HeadCounters, datagrams[HEAD_GOOD])},
+    {"refused", "", "", "", "by reason", FIELD_OBJECT(head_drop_rows)},
+};
+
 static const Field fault_rows[] = {
     {"FAULT", "", "", "when there were none", "datagrams", .item = next_fault, .kind = FIELD_OF_COUNT,
      .unless_0 = true},
@@ -257,6 +294,29 @@ static const Field stream_rows[] = {
     {"refused", "", "", "", "not sent, since no program listened to those before", OF_STREAM(refused)},
     {"no_route", "", "", "", "not sent, since there was no way to the address", OF_STREAM(no_route)},
     {"lost", "", "", "", "not sent, since the network was too slow", OF_STREAM(lost)},
+};
+
+static const Field flip_rows[] = {
+    {"median", "ms", "", "", "median, at most 2.4 % above the exact one", OF_FLIPS(median_ms), .as = field_ms},
+    {"p95", "ms", "", "", "95th percentile, likewise", OF_FLIPS(p95_ms), .as = field_ms},
+    {"p99", "ms", "", "", "99th percentile, likewise", OF_FLIPS(p99_ms), .as = field_ms},
+    {"max", "ms", "", "", "maximum", OF_FLIPS(max_ms), .as = field_ms},
+    {"count", "", "", "", "number of them", OF_FLIPS(count)},
+};
+
+static const Field projector_rows[] = {
+    {"on", "", "", "", "display, size, window system and renderer, place of the image", OF_PROJECTOR(what)},
+    {"shown", "", "", "", "frames that were flipped", OF_PROJECTOR(shown)},
+    {"dropped", "", "", "", "never shown: a newer one came before, or the window was gone", OF_PROJECTOR(dropped)},
+    {"late", "", "", "", "of those shown, at whose flip a newer one was there", OF_PROJECTOR(late)},
+    {"waited_out", "", "", "", "frames that were held up for all of projector.wait_ms", OF_PROJECTOR(waited_out)},
+    {"refresh_hz", "Hz", "", "when 0", "of the display; 0: not known", OF_PROJECTOR(refresh_hz), .unless_0 = true},
+    {"after_render_ms", "ms", "", "without a flip", "from the end of rendering to the flip", .in = after_of,
+     FIELD_OBJECT(flip_rows)},
+    {"interval_ms", "ms", "", "before the second flip", "from flip to flip", .in = interval_of,
+     FIELD_OBJECT(flip_rows)},
+    {"off_refresh_ms", "ms", "", "when the refresh rate is not known",
+     "how far that is from a whole number of refreshes", .in = off_of, FIELD_OBJECT(flip_rows)},
 };
 
 static const Field entity_rows[] = {
@@ -308,10 +368,14 @@ static const Field counter_rows[] = {
     {"own", "", "", "", "datagrams of this node itself, ignored", IN_RUN(own), .channel = FIELD_COUNTERS},
     {"live", "", "", "in a replay", "counters of a live node only", .in = live_of, FIELD_OBJECT(live_rows)},
     {"cigi", "", "", "without exercise.cigi", "of a CIGI host", .in = cigi_of, FIELD_OBJECT(cigi_rows)},
+    {"head", "", "", "without exercise.head, and in a replay", "datagrams of a head tracker", .in = head_of,
+     FIELD_OBJECT(head_rows)},
     {"answers", "", "", "without publish.detections_port", "datagrams of a recogniser", .in = answers_of,
      FIELD_OBJECT(answer_rows)},
     {"streams", "", "", "without publish.stream", "datagrams of all streams", .in = streams_of,
      FIELD_OBJECT(stream_rows)},
+    {"projector", "", "", "without projector.band", "frames on a display", .in = projector_of,
+     FIELD_OBJECT(projector_rows)},
     {"frames_in_a_lost_ring", "", "", "when 0",
      "frames in shared memory whose name had been removed or replaced by another program",
      IN_RESULT(sent.frames_unnamed), .unless_0 = true},

@@ -41,6 +41,7 @@ static Status open_session(Session *s)
                         : shared->flight ? session_host_flight(&s->host, s)
                         : observes       ? session_host_observer(&s->host, s)
                                          : session_host_entity(&s->host, s);
+    if (status == STATUS_OK && *shared->config->exercise.head) status = session_host_head(&s->host, s);
     if (status == STATUS_OK) status = entity_table_create(&s->table, &table, shared->catalog);
     if (status == STATUS_OK) status = read_marks(s);
     if (status == STATUS_OK) status = session_heat_open(s);
@@ -149,6 +150,7 @@ Status session_close(Session *s, SessionResult *result)
         answers_close(s->answers, &s->result.answers);
         geoid_close(&s->geoid);
     }
+    head_link_close(s->head, &s->result.head);
     if (status == STATUS_OK) status = s->listed;
     /* of a session that could not be opened nothing is written over what it could not read */
     if (s->opened && *s->shared->config->heat.marks && status == STATUS_OK)

@@ -2,6 +2,7 @@
 #ifndef SENSOR_NODE_SESSION_SESSION_H
 #define SENSOR_NODE_SESSION_SESSION_H
 
+#include "dis/head/head_link.h"
 #include "entities/table/entity_table.h"
 #include "render/frame/render.h"
 #include "sensor/node/choices/choices.h"
@@ -65,7 +66,8 @@ typedef struct SessionResult {
     InstrumentCount instrument[instruments_most]; /* frames that lack one */
     int             frames_reduced;               /* frames of less quality than was set */
     AnswerCounters  answers;                      /* of a recogniser; when closed */
-    SentCounters    sent;                         /* likewise: streams, ring of frames */
+    SentCounters    sent;                         /* likewise: streams, ring of frames, projector */
+    HeadCounters    head;                         /* likewise: of a head tracker */
     int files_failed, files_left_out;   /* live: frames without files, for disk errors, for time; when closed */
     int(*number);                       /* [listed] */
     char (*hash)[sha256_text_size];     /* [listed] */

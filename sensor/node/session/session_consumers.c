@@ -2,6 +2,7 @@
 #include "sensor/node/session/session_private.h"
 
 #include "sensor/publish/memory/consume_memory.h"
+#include "sensor/publish/projector/consume_projector.h"
 #include "sensor/publish/consumers/consume_pairs.h"
 #include "sensor/publish/video/consume_video.h"
 #include "sensor/instruments/radar.h"
@@ -166,6 +167,22 @@ static Status add_memory(Consumers *list, Session *s, bool behind_displays)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+/* Adds the window on a display, behind the displays' images. It takes a frame at once, or as long as the settings
+ * say. */
+static Status add_projector(Consumers *list, Session *s)
+{
+    const Config *config = s->shared->config;
+    const Camera *camera = camera_of(&s->instruments);
+    Consumer     *consumer = NULL;
+    if (!*config->projector.band) return STATUS_OK;
+    ProjectorOf of = {
+        .config = config, .bands = s->shared->bands, .latency = s->latency, .counters = &s->result.sent.projector};
+    for (int b = 0; b < BAND_COUNT && camera; b++)
+        if (camera->chain[b]) of.count_bits[b] = (int)lround(log2(chain_full(camera->chain[b]) + 1));
+    const Status status = consume_projector(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static double arrival_s(const void *player, double t_s) { return player_arrival_s(player, t_s); }
 
 static Status add_dis(Consumers *list, const Session *s)
@@ -236,6 +253,7 @@ static Status for_replay(Session *s, FrameDone *done, unsigned raw)
     Status     status = behind ? pool_create(&s->publish_pool, threads) : STATUS_OK;
     Pool      *pool = behind ? s->publish_pool : s->shared->pool;
     if (status == STATUS_OK) status = add_memory(&first, s, true);
+    if (status == STATUS_OK) status = add_projector(&first, s);
     if (status == STATUS_OK) status = replay_files(&files, s, done, pool, raw);
     if (status == STATUS_OK) status = add_displays(&all, s, pool, consumers_wants(&first) | consumers_wants(&files));
     if (status == STATUS_OK) status = add_all(&all, &first);
@@ -296,6 +314,7 @@ static Status for_live(Session *s, FrameDone *done)
     unsigned  wants = 0;
     Status    status = pool_create(&s->publish_pool, 1);
     if (status == STATUS_OK) status = add_memory(&first, s, true);
+    if (status == STATUS_OK) status = add_projector(&first, s);
     if (status == STATUS_OK) status = add_hashes(&behind, s, done);
     if (status == STATUS_OK) status = live_files(&behind, s, &wants);
     if (status == STATUS_OK) status = add_video(&sent, s, VIDEO_TO_FILE | VIDEO_TO_STREAM, true);
@@ -319,6 +338,7 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     Consumers first = {0}, files = {0}, sent = {0};
     Status    status = pool_create(&s->publish_pool, pool_threads(s->shared->pool));
     if (status == STATUS_OK) status = add_memory(&first, s, true);
+    if (status == STATUS_OK) status = add_projector(&first, s);
     if (status == STATUS_OK) status = replay_files(&files, s, done, s->publish_pool, raw);
     if (status == STATUS_OK) status = add_video(&sent, s, VIDEO_TO_STREAM, true);
     const unsigned wants = consumers_wants(&first) | consumers_wants(&sent) | consumers_wants(&files);

@@ -208,7 +208,10 @@ static void fill_record(Frame *f, const Session *s, const Eye *eye)
                        .host = eye->hidden >= 0 ? &f->seen.snapshot.entity[eye->hidden] : NULL,
                        .host_id = s->shared->flight ? s->shared->flight->id : (DisEntityId){0},
                        .request = &f->request,
-                       .hfov_rad = s->shared->config->sensor.hfov_deg * rad_per_deg,
+                       .hfov_rad = eye->turned ? 2 * atan(0.5 * eye->view.width / eye->view.focal_px)
+                                               : s->shared->config->sensor.hfov_deg * rad_per_deg,
+                       .turned = eye->turned,
+                       .head = eye->head,
                        .gimbal_at_limit = eye->at_limit,
                        .scene_rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]},
                        .ground_km2 = NAN,

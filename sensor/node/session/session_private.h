@@ -53,6 +53,7 @@ struct Session {
     SessionMadeReady     ready;
     Status               advance_status; /* the first failure of what outlasts a frame: frames fail with it */
     HostMotion          *host;
+    HeadLink            *head;          /* a head tracker that turns its eye; NULL: none, or of a recording */
     int64_t              tick;          /* the next one */
     double               p_aim_ecef[3]; /* last known */
     bool                 aim_known;
@@ -84,6 +85,8 @@ typedef struct Eye {
     bool     at_limit, aim_known;
     double   p_aim_ecef[3];
     double   w_cam_rps[3]; /* how the camera turns, in its own axes */
+    bool     turned;       /* by a head tracker: head */
+    HeadPose head;
 } Eye;
 
 /* How the eye moves: an entity of the table, an observer. One implementation is a struct that begins with this; it
@@ -111,6 +114,8 @@ Status session_host_flight(HostMotion **out, Session *s);
 void session_flight_seen(Session *s, const Frame *frame);
 /* As a CIGI host says. */
 Status session_host_cigi(HostMotion **out, Session *s);
+/* Puts a head tracker on a host, which it takes over, also on failure. */
+Status session_host_head(HostMotion **host, Session *s);
 
 /* Names the host of the plan, and adds it to the result's list, once. */
 void session_name_host(Session *s);

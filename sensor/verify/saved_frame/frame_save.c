@@ -26,8 +26,9 @@ static Status write_settings(char **text, const Config *config)
     *plain.terrain.store = *plain.terrain.place = *plain.terrain.trees = 0;
     if (strcmp(plain.terrain.buildings, "invented") != 0)
         snprintf(plain.terrain.buildings, sizeof plain.terrain.buildings, "off");
-    *plain.terrain.geoid = *plain.record.path = *plain.quality.table = *plain.exercise.cigi = *plain.flight.missile = 0;
-    *plain.exercise.cigi_types = 0;
+    *plain.terrain.geoid = *plain.record.path = *plain.quality.table = *plain.flight.missile = 0;
+    *plain.exercise.cigi = *plain.exercise.cigi_types = *plain.exercise.head = 0;
+    *plain.projector.band = *plain.projector.table = 0;
     FILE *to = open_memstream(text, &octets);
     if (!to) return STATUS_NO_MEMORY;
     config_write_settings(to, &plain);
