@@ -26,11 +26,12 @@ STEP_PX = 5        # farthest from where it is expected
 FAR_PX = 14        # and from where it was
 FAR_MATCH = 0.65   # correlation that there is at least
 SCALES = (0.985, 1.0, 1.015, 1.04, 1.08, 1.14)  # by which it may have grown since the last frame
+VIEW_PX = 11        # least width and height of what is correlated: a part of a vehicle alone is like much else
 LEARNS = 0.25      # share of the newest image in the template
 SETTLES = 0.15     # share of the way to the outline of what is busy there, in each frame
 GRID = 14          # px: larger targets are outlined in an image made smaller
 PATIENCE = 12      # frames hidden, after which it is given up
-FILLS = 0.75       # of the image's width or height: nothing is answered beyond
+FILLS = 1.0        # of the image's width or height: nothing is answered beyond
 
 
 def shifted(plane):
@@ -138,7 +139,7 @@ class Target:
         self.learn(plane, 1)
 
     def view(self):
-        return self.size * 1.2 + 2
+        return numpy.maximum(self.size * 1.2 + 2, VIEW_PX)
 
     def learn(self, plane, share):
         """Takes a share of how it looks now; the template has about a sample a pixel, at most 48 x 48."""
@@ -158,10 +159,15 @@ class Track:
     bands_wanted = 1
 
     def __init__(self):
-        self.target = self.candidate = None
+        self.target = self.candidate = self.last = None
 
     def find(self, look):
         plane = cleaned(next(iter(look.planes.values())))
+        if self.target:
+            self.target.centre = self._turned(self.target.centre, look, plane)
+        elif self.candidate:
+            self.candidate = self._turned(self.candidate[0], look, plane), self.candidate[1]
+        self.last = look
         seen = self._follow(plane) if self.target else self._lock(plane)
         if not seen:
             return []
@@ -171,6 +177,14 @@ class Track:
             return []
         box = max(left, 0), max(top, 0), min(right, width), min(bottom, height)
         return [recognise.Detection(box, 0.9, 'tracked')] if box[0] < box[2] and box[1] < box[3] else []
+
+    def _turned(self, at, look, plane):
+        """Where a place of the last image is in this one, as far as the camera has turned since."""
+        if look.axes is None or self.last is None or self.last.axes is None:
+            return at
+        middle = numpy.array(plane.shape[::-1]) / 2
+        d = look.axes.T @ self.last.axes @ numpy.append((at - middle) / self.last.focal_px, 1)
+        return middle + look.focal_px * d[:2] / d[2] if d[2] > 0 else at
 
     # ---- before
 
