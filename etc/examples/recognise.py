@@ -28,8 +28,9 @@ import numpy
 
 # box: left, top, right, bottom in pixels, the last two beyond it; score 0 .. 1; class_name: printable ASCII, at most 31
 Detection = collections.namedtuple('Detection', 'box score class_name')
-# planes {band: float32 [height, width]}, in the order of preference; focal_px: focal length in pixels
-Look = collections.namedtuple('Look', 'planes focal_px')
+# planes {band: float32 [height, width]}, in the order of preference; focal_px: focal length in pixels; axes [3, 3]: the camera's,
+# right, down and ahead, as columns in axes that do not turn with it, as a seeker's gyros tell it (of the ring; of files None)
+Look = collections.namedtuple('Look', 'planes focal_px axes', defaults=(None,))
 PREFERRED = ('lwir', 'mwir', 'optical')  # an order of bands for who looks for warm things
 
 
@@ -246,7 +247,8 @@ def ring_look(frame, wanted, bands=None):
         channels = [plane for name, plane in frame.planes.items() if name.split('/')[0] == band]
         if channels and len(planes) < wanted:
             planes[band] = numpy.mean(channels, axis=0, dtype=numpy.float32)
-    return Look(planes, frame.record.focal_px)
+    axes = getattr(frame.record, 'r_ecef_from_cam', None)
+    return Look(planes, frame.record.focal_px, None if axes is None else numpy.array(axes, float).reshape(3, 3))
 
 
 def run_ring(recogniser, name, wait_s, bands=None):

@@ -19,6 +19,7 @@ import recognise_shape  # noqa: E402
 from recognise_contrast import Contrast, Sums, contrast, noise_of, shared, suppressed  # noqa: E402
 from recognise_hottest import Hottest  # noqa: E402
 from recognise_shape import Shape  # noqa: E402
+from recognise_track import Track  # noqa: E402
 
 failures = 0
 FOCAL_PX = 2000
@@ -234,6 +235,54 @@ def ring():
         check(f'ring: {name}, scores', all(abs(d['score'] - w.score) < 1e-4 for d, w in zip(answer['detections'], want)))
 
 
+# ---- the tracker: where the target is, how large and what is about it, is known -------------------------------------------
+
+PATTERN = numpy.array([[90, 10, -60, -60, 20, 80], [90, 90, -60, 10, 20, -40], [20, 70, 70, 10, 60, 60]], float)
+
+
+def film(frames, seed=5, target=True, decoy=None, hidden=(), jump=None):
+    """Images of 128 x 96: noise, a road across them; a patterned target that moves, grows by 2 % a frame and begins in the middle.
+    Yields the image and the target's centre."""
+    rng, x, y, width = numpy.random.default_rng(seed), 64.0, 48.0, 12.0
+    rows, columns = numpy.mgrid[0:96, 0:128] + 0.5
+    for k in range(frames):
+        plane = rng.normal(1000, 2, (96, 128))
+        plane[abs(rows - 62 - 0.1 * columns) < 1.5] += 40
+        if decoy is not None and k >= decoy:
+            plane[20:26, 30:42] += 3 * numpy.kron(PATTERN, numpy.ones((2, 2)))
+        if target and k not in hidden:
+            u, v = numpy.floor((columns - x) / width * 6 + 3), numpy.floor((rows - y) / width * 6 + 1.5)
+            on = (u >= 0) & (u < 6) & (v >= 0) & (v < 3)
+            plane[on] += PATTERN[v[on].astype(int), u[on].astype(int)]
+        yield numpy.rint(plane).astype(numpy.float32), (x, y)
+        x, y, width = x + 0.5, y - 0.2, width * 1.02
+        if jump and k == jump[0]:
+            x, y = x + jump[1], y + jump[2]
+
+
+def off(film_):
+    """Of each frame of a film the distance from the target to the answer; None: there was none."""
+    tracker, out = Track(), []
+    for plane, (x, y) in film_:
+        answer = found(tracker, plane)
+        check('track: one answer at most', len(answer) <= 1)
+        out.append(numpy.hypot((answer[0].box[0] + answer[0].box[2]) / 2 - x, (answer[0].box[1] + answer[0].box[3]) / 2 - y)
+                   if answer else None)
+    return out
+
+
+def tracker():
+    held = off(film(50))
+    check(f'track: held from the second frame on, within 2 px: {held}', all(d is not None and d < 2 for d in held[1:]))
+    check('track: nothing where there is no target', all(d is None for d in off(film(20, target=False))))
+    check('track: not what appears beside it, and is busier', all(d is not None and d < 2 for d in off(film(30, decoy=10))[1:]))
+    turned = off(film(30, jump=(12, -9, 4)))
+    check(f'track: found again when the seeker turns: {turned}', all(d is not None and d < 2 for d in turned[1:]))
+    again = off(film(30, hidden=range(10, 15)))
+    check(f'track: nothing while it is hidden, and the same again after that: {again}',
+          all(d is None for d in again[10:15]) and all(d is not None and d < 2.5 for d in again[15:]))
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -242,6 +291,7 @@ def main():
         contrasts()
         shape()
         tracks()
+        tracker()
         runs(folder)
         ring()
     print(f'{failures} failed')

@@ -8,7 +8,7 @@ judges man
 cmake --install "$build" --prefix "$tmp/prefix" >"$tmp/said" 2>&1 || fail "cmake --install: $(tail -n 1 "$tmp/said")"
 for file in bin/pitviper bin/pitviper-bench lib/pitviper/pitviper-exr.so lib/pitviper/pitviper-images.so lib/pitviper/pitviper-rasters share/man/man1/pitviper.1 share/pitviper/catalog.csv share/pitviper/ADDING.md \
             include/pitviper_memory.h share/pitviper/examples/read_memory.c share/pitviper/examples/read_memory.py \
-            share/pitviper/examples/recognise.py share/pitviper/examples/recognise_shape.py share/pitviper/examples/recognise_hottest.c \
+            share/pitviper/examples/recognise.py share/pitviper/examples/recognise_shape.py share/pitviper/examples/recognise_track.py share/pitviper/examples/recognise_hottest.c \
             share/pitviper/README.md share/pitviper/LICENSE share/pitviper/scenarios/demo.yaml share/pitviper/atmosphere/us1976/visibilities.csv; do
     check "installed: $file" [ -f "$tmp/prefix/$file" ]
 done
