@@ -183,6 +183,12 @@ static void head_tick(HostMotion *motion, double t_s)
     h->under->tick(h->under, t_s);
 }
 
+static void head_begin(HostMotion *motion, double t_s)
+{
+    HeadHost *h = (HeadHost *)motion;
+    if (h->under->begin) h->under->begin(h->under, t_s);
+}
+
 static bool head_is_there(const HostMotion *motion)
 {
     const HeadHost *h = (const HeadHost *)motion;
@@ -202,7 +208,7 @@ Status session_host_head(HostMotion **host, Session *s)
     const Config *config = s->shared->config;
     HeadHost     *h = calloc(1, sizeof *h);
     if (!h) return STATUS_NO_MEMORY;
-    h->motion = (HostMotion){s, head_tick, head_is_there, head_eye, head_destroy};
+    h->motion = (HostMotion){s, head_tick, head_is_there, head_eye, head_destroy, head_begin};
     h->under = *host;
     h->on_entity = s->plan.any_munition || !dis_entity_id_is_none(s->plan.host);
     *host = &h->motion;
