@@ -234,6 +234,19 @@ static int help_command(int argc, char **argv)
     return unknown("command or topic", argv[0], true);
 }
 
+/* Optional parts, for --verbose --version. */
+static const char built_with[] =
+#ifdef PITVIPER_VIDEO
+    "videos and streams (FFmpeg): yes\n"
+#else
+    "videos and streams: no, built without FFmpeg's libraries (libavcodec-dev libavformat-dev libavutil-dev)\n"
+#endif
+#ifdef PITVIPER_SDL
+    "frames on a display (SDL2): yes";
+#else
+    "frames on a display: no, built without SDL2 (libsdl2-dev)";
+#endif
+
 int main(int argc, char **argv)
 {
     program_fill_closed();
@@ -250,6 +263,7 @@ int main(int argc, char **argv)
     }
     if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
         puts("pitviper " PITVIPER_VERSION);
+        if (log_is_verbose()) puts(built_with);
         return program_printed(0);
     }
     return program_printed(run_named(argc - 1, argv + 1));

@@ -21,7 +21,8 @@ struct Pool {
     pthread_mutex_t lock;
     pthread_cond_t  work, done;
     uint64_t        round; /* number of the present pool_run call */
-    int             busy;  /* workers still running */
+    bool            open;  /* that call may still have tasks to hand out */
+    int             busy;  /* workers that run its tasks */
     bool            stop;
     PoolTask       *task;
     void           *user;
@@ -48,9 +49,10 @@ static void *worker_main(void *argument)
     thread_flush_denormals();
     pthread_mutex_lock(&pool->lock);
     for (;;) {
-        while (pool->round == seen && !pool->stop) pthread_cond_wait(&pool->work, &pool->lock);
+        while ((pool->round == seen || !pool->open) && !pool->stop) pthread_cond_wait(&pool->work, &pool->lock);
         if (pool->stop) break;
         seen = pool->round;
+        pool->busy++;
         pthread_mutex_unlock(&pool->lock);
         run_tasks(pool, self->index);
         pthread_mutex_lock(&pool->lock);
@@ -113,14 +115,17 @@ void pool_run(Pool *pool, int count, PoolTask *task, void *user)
     pool->user = user;
     pool->count = count;
     pool->next = 0;
-    pool->busy = pool->threads - 1;
+    pool->busy = 0;
+    pool->open = true;
     pool->round++;
     pthread_cond_broadcast(&pool->work);
     pthread_mutex_unlock(&pool->lock);
 
     run_tasks(pool, 0);
 
+    /* all are handed out: a worker that is not awake by now has nothing to do, and is not waited for */
     pthread_mutex_lock(&pool->lock);
+    pool->open = false;
     while (pool->busy > 0) pthread_cond_wait(&pool->done, &pool->lock);
     pthread_mutex_unlock(&pool->lock);
 }

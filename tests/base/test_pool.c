@@ -27,6 +27,37 @@ static void every_task_runs_once(void **state)
     }
 }
 
+typedef struct Round {
+    int number;
+    int of_task[64]; /* the round in which it ran last */
+} Round;
+
+static void note_round(void *user, int worker, int task)
+{
+    Round *r = user;
+    (void)worker;
+    for (volatile int spin = 0; spin < 300; spin++) continue;
+    r->of_task[task] = r->number;
+}
+
+/* Rounds so short that workers mostly wake up when all is done: each has its own tasks, all of them done when it ends.
+ */
+static void rounds_follow_each_other(void **state)
+{
+    (void)state;
+    for (int threads = 1; threads <= 4; threads++) {
+        Pool *pool;
+        Round r = {0};
+        assert_int_equal(pool_create(&pool, threads), STATUS_OK);
+        for (r.number = 1; r.number <= 3000; r.number++) {
+            const int count = 1 + r.number % 64;
+            pool_run(pool, count, note_round, &r);
+            for (int k = 0; k < count; k++) assert_int_equal(r.of_task[k], r.number);
+        }
+        pool_destroy(pool);
+    }
+}
+
 static void a_pool_needs_a_thread(void **state)
 {
     (void)state;
@@ -62,6 +93,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_task_runs_once),
+        cmocka_unit_test(rounds_follow_each_other),
         cmocka_unit_test(a_pool_needs_a_thread),
         cmocka_unit_test(the_arena_zeroes_aligns_and_keeps_its_blocks),
     };

@@ -13,6 +13,8 @@ for source in sensor/publish/projector/display_window.c sensor/settings/projecto
     check "$source has the same functions" [ "$(defined "$tmp/without.o")" = "$(defined "$objects/$source.o")" ]
     check "$source says what to install" grep -q 'built without SDL2; install libsdl2-dev' "$tmp/without.o"
 done
+run --verbose --version
+check "the version says what it was built with" [ "$(grep -c '^frames on a display (SDL2): yes' "$tmp/stdout")" = "$(has_projector >/dev/null 2>&1 && echo 1 || echo 0)" ]
 libraries() { ldd "$1" | grep -c SDL; }
 check "the program itself is linked without SDL2" [ "$(libraries "$pitviper")" = 0 ]
 finish

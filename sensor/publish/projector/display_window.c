@@ -224,7 +224,7 @@ void display_window_close(DisplayWindow *w, ProjectorCounters *counters)
     if (w->socket >= 0) shutdown(w->socket, SHUT_WR); /* it ends, and what it says until then is taken */
     if (w->process > 0) end_process(w->process);
     if (w->started) pthread_join(w->thread, NULL);
-    if (w->shared && w->shared->waiting & window_fresh) w->counters.dropped++; /* the last one was never taken */
+    if (w->shared && window_is_fresh(w->shared)) w->counters.dropped++; /* the last one was never taken */
     latency_figures(&w->counters.interval, &w->interval);
     latency_figures(&w->counters.off, &w->off);
     if (counters) *counters = w->counters;
@@ -257,9 +257,9 @@ bool display_window_show(DisplayWindow *w, uint32_t number)
     pthread_mutex_unlock(&w->lock);
     if (gone) return false;
     w->shared->number[w->own] = number;
-    const uint32_t before = __atomic_exchange_n(&w->shared->waiting, w->own | window_fresh, __ATOMIC_ACQ_REL);
-    w->own = (before & ~(uint32_t)window_fresh) % window_images; /* whatever the other program has written there */
-    if (before & window_fresh) drop(w, w->shared->number[w->own]);
+    int undone;
+    w->own = window_give(w->shared, w->own, &undone);
+    if (undone) drop(w, w->shared->number[w->own]);
     send(w->socket, &look, 1, MSG_DONTWAIT | MSG_NOSIGNAL); /* full: it has enough to wake up */
     return true;
 }

@@ -35,6 +35,24 @@ static inline uint32_t *window_image(WindowShared *shared, int width, int height
                                 image * window_image_octets(width, height));
 }
 
+/* The node gives the image that it has filled, and gets another to fill. undone: that one was given before, and never
+ * taken. */
+static inline uint32_t window_give(WindowShared *shared, uint32_t own, int *undone)
+{
+    const uint32_t before = __atomic_exchange_n(&shared->waiting, own | window_fresh, __ATOMIC_ACQ_REL);
+    *undone = (before & window_fresh) != 0;
+    return (before & ~(uint32_t)window_fresh) % window_images; /* whatever another program has written there */
+}
+static inline int window_is_fresh(const WindowShared *shared)
+{
+    return (__atomic_load_n(&shared->waiting, __ATOMIC_ACQUIRE) & window_fresh) != 0;
+}
+/* The window takes the image that waits for its own, which it no longer shows; only where one is fresh. */
+static inline uint32_t window_take(WindowShared *shared, uint32_t own)
+{
+    return __atomic_exchange_n(&shared->waiting, own, __ATOMIC_ACQ_REL) & ~(uint32_t)window_fresh;
+}
+
 typedef enum WindowEvent {
     WINDOW_OPENED = 1, /* text: what it is shown by and where; number: refresh rate, mHz, 0: not known */
     WINDOW_FLIPPED,    /* number: of the image; time_ns: CLOCK_MONOTONIC when its flip was done */

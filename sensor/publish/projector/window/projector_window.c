@@ -138,14 +138,12 @@ static bool present(Shown *s)
     return true;
 }
 
-static bool is_fresh(const Shown *s) { return __atomic_load_n(&s->shared->waiting, __ATOMIC_ACQUIRE) & window_fresh; }
-
 /* Shows the newest image, if there is one that was not shown. False: SDL failed. */
 static bool show_newest(Shown *s)
 {
     struct timespec now;
-    if (!is_fresh(s)) return true;
-    s->own = __atomic_exchange_n(&s->shared->waiting, s->own, __ATOMIC_ACQ_REL) & ~(uint32_t)window_fresh;
+    if (!window_is_fresh(s->shared)) return true;
+    s->own = window_take(s->shared, s->own);
     const uint32_t number = s->shared->number[s->own];
     if (SDL_UpdateTexture(s->texture, NULL, window_image(s->shared, s->width, s->height, s->own), 4 * s->width) != 0)
         return false;
@@ -154,7 +152,7 @@ static bool show_newest(Shown *s)
     clock_gettime(CLOCK_MONOTONIC, &now);
     send_message(&(WindowMessage){.event = WINDOW_FLIPPED,
                                   .number = number,
-                                  .newer = is_fresh(s),
+                                  .newer = (uint32_t)window_is_fresh(s->shared),
                                   .time_ns = (int64_t)now.tv_sec * 1000000000 + now.tv_nsec});
     return true;
 }
