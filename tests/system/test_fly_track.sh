@@ -57,6 +57,10 @@ row=$(grep -E '^track +cross +truck +0 ' "$tmp/stdout")
 check "a cell: $row" grep -qE ' 19/20 +1\.05 +0\.6 \.\. 1\.5 +0\.1 +1 lost' <<<"$row"
 check "a plot that is XML" xml "$tmp/cep.svg"
 check "with a point for each delay" [ "$(grep -c '<circle' "$tmp/cep.svg")" = 4 ]
+matrix --flown --renew "a test"
+check "its record" grep -qx 'track,cross,truck,0,20,19,0.764,0.991,1.05,0.6,1.5,0.1,0,1,0,0' "$tmp/none.csv"
+check "with the reason" grep -qx '# reason: a test' "$tmp/none.csv"
+rm "$tmp/none.csv"
 {
     echo recogniser,case,target,late_ms,flights,hits,low,high,cep_m,cep_low_m,cep_high_m,least_m,not_found,lost,other,beside
     echo track,cross,truck,0,20,8,0.22,0.613,1.05,0.6,1.5,0.1,0,12,0,0
