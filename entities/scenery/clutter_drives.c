@@ -92,23 +92,29 @@ Status clutter_add_riders(ClutterWork *work, const ClutterLine *line, ClutterThi
 /* ---- off the ways ------------------------------------------------------------------------------- */
 
 enum { most_corners = 18, least_corners = 11 };
-static const double corner_m = 12;
+static const double corner_m = 12, off_way_m = 5; /* off_way_m: from the middle of a line to its edge */
 
-/* Whether wheels can go on from there: soil, room beside it, no way, nothing built. */
+/* Whether wheels can come from a corner before, headed this way: soil below both lanes, no way, nothing built. */
 static bool goes_on(const ClutterWork *work, const double p[2], double heading_rad)
 {
-    static const float room_m[3] = {12, 9, 4}; /* both sides of the line, with what drives on them */
-    return surface_loosens(landscape_surface(work->config->landscape, p[0], p[1])) &&
-           clutter_can_stand(work->spots, p[0], p[1], heading_rad, room_m) && clutter_may_pass(work, p);
+    static const float  room_m[3] = {12, 9, 4}; /* both sides of the line, with what drives on them */
+    static const double step_m = 3;
+    const double        forward[2] = {sin(heading_rad), cos(heading_rad)};
+    for (double back_m = 0; back_m < corner_m; back_m += step_m)
+        for (int side = -1; side <= 1; side++) {
+            const double x = p[0] - back_m * forward[0] + 0.5 * off_way_m * side * forward[1];
+            const double y = p[1] - back_m * forward[1] - 0.5 * off_way_m * side * forward[0];
+            if (!surface_loosens(landscape_surface(work->config->landscape, x, y))) return false;
+        }
+    return clutter_can_stand(work->spots, p[0], p[1], heading_rad, room_m) && clutter_may_pass(work, p);
 }
 
 /* From a place on it winds as far as it can: of a curvature that is drawn again for every four corners. */
 Status clutter_place_off_ways(ClutterWork *work, int row, uint64_t h, double x_m, double y_m)
 {
-    static const double side_m = 5; /* from the middle of its line to the edge that a path keeps half of */
     static const double bend_rad = 0.12;
     double              p[most_corners][2] = {{x_m, y_m}}, heading_rad = 2 * pi_rad * clutter_unit(h, 4);
-    ClutterLine         line = {.p = p, .count = 1, .kind = clutter_off_ways, .half_m = side_m, .key = h};
+    ClutterLine         line = {.p = p, .count = 1, .kind = clutter_off_ways, .half_m = off_way_m, .key = h};
     ClutterThing        rider = {.rank = h, .row = row, .variant = clutter_variant_of(work, row, h)};
     if (!clutter_in_square(work->config, x_m, y_m, clutter_off_ways_m + clutter_margin_m)) return STATUS_OK;
     if (!clutter_is_area(work->config->landscape, work->table.row[row].where, x_m, y_m) ||
