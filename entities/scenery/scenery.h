@@ -106,6 +106,12 @@ typedef struct Scenery {
     SceneryHarm *harm; /* [harms] */
 } Scenery;
 
+/* What is looked at: all within a cone. */
+typedef struct SceneryCone {
+    double p_enu[3], d_enu[3]; /* eye; unit vector along its axis */
+    double tangent;            /* of the half angle */
+} SceneryCone;
+
 void scenery_free(Scenery *scenery); /* accepts zeroes */
 
 /* Moves r and p of an object that drives to where it is at a time; others keep their own. */

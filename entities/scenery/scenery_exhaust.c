@@ -11,18 +11,6 @@ static bool runs(const Scenery *s, const SceneryObject *o)
            !(s->state[o->state].stood_s > 0);
 }
 
-/* With 12 m about it, which its gas may reach in two seconds of a breeze. */
-static bool in_view(double *range_m, const SceneryCone *seen, const double p_enu[3])
-{
-    static const double reach_m = 12;
-    double              to[3];
-    v3_sub(to, p_enu, seen->p_enu);
-    *range_m = v3_length(to);
-    const double along_m = v3_dot(to, seen->d_enu), off_m = sqrt(fmax(*range_m * *range_m - along_m * along_m, 0));
-    return *range_m < scenery_exhausts_m && along_m > -reach_m &&
-           off_m < seen->tangent * fmax(along_m, 0) + reach_m * sqrt(1 + seen->tangent * seen->tangent);
-}
-
 /* Where an object is, and what moves it: movers are in the order of their objects. */
 static const SceneryMover *mover_of(const Scenery *s, int object, int *next)
 {
@@ -60,7 +48,8 @@ static int gas_of(EffectPuff *out, const Scenery *s, int object, const LocalFram
 Status scenery_exhaust(Snapshot *s, const Scenery *scenery, const LocalFrame *frame, const SceneryCone *seen,
                        Arena *arena)
 {
-    int running = 0, count = 0, next = 0;
+    static const double reach_m = 12; /* of gas in two seconds of a breeze */
+    int                 running = 0, count = 0, next = 0;
     for (int k = 0; k < scenery->objects; k++) running += runs(scenery, &scenery->object[k]);
     if (running == 0 || !s->effect_table || !scenery->smokes || !(fabs(s->t_s) < effect_latest_s)) return STATUS_OK;
     SceneryNear *near = arena_alloc(arena, (size_t)running, sizeof *near);
@@ -72,7 +61,7 @@ Status scenery_exhaust(Snapshot *s, const Scenery *scenery, const LocalFrame *fr
         const SceneryMover *mover = mover_of(scenery, k, &next);
         if (mover) scenery_pose(p_enu, r, scenery, mover, s->t_s);
         near[count].which = k;
-        count += in_view(&near[count].range_m, seen, p_enu);
+        count += scenery_in_cone(&near[count].range_m, seen, p_enu, reach_m, scenery_exhausts_m);
     }
     count = scenery_nearest(near, count, scenery_exhausts_most);
     EffectPuff  *at;

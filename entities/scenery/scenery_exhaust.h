@@ -11,12 +11,6 @@
 enum { scenery_exhausts_most = 64 };
 static const double scenery_exhausts_m = 3000;
 
-/* What is looked at: all within a cone. */
-typedef struct SceneryCone {
-    double p_enu[3], d_enu[3]; /* eye; unit vector along its axis */
-    double tangent;            /* of the half angle */
-} SceneryCone;
-
 /* Puts the puffs behind the snapshot's own, as scenery_smoke does. In the arena. */
 Status scenery_exhaust(Snapshot *snapshot, const Scenery *scenery, const LocalFrame *frame, const SceneryCone *seen,
                        Arena *arena);

@@ -16,6 +16,16 @@ int scenery_nearest(SceneryNear *near, int count, int most)
     return count < most ? count : most;
 }
 
+bool scenery_in_cone(double *range_m, const SceneryCone *seen, const double p_enu[3], double radius_m, double most_m)
+{
+    double to[3];
+    v3_sub(to, p_enu, seen->p_enu);
+    *range_m = v3_length(to);
+    const double along_m = v3_dot(to, seen->d_enu), off_m = sqrt(fmax(*range_m * *range_m - along_m * along_m, 0));
+    return *range_m < most_m && along_m > -radius_m &&
+           off_m < seen->tangent * fmax(along_m, 0) + radius_m * sqrt(1 + seen->tangent * seen->tangent);
+}
+
 Status scenery_puff_room(EffectPuff **at, size_t *room, Snapshot *s, size_t more, Arena *arena)
 {
     const size_t was = (size_t)s->puff_count, left = effect_puff_capacity - was;

@@ -2,8 +2,8 @@
 #ifndef ENTITIES_SCENERY_SCENERY_PUFFS_PRIVATE_H
 #define ENTITIES_SCENERY_SCENERY_PUFFS_PRIVATE_H
 
+#include "entities/scenery/scenery.h"
 #include "entities/traces/effect_history.h"
-#include "entities/table/snapshot.h"
 
 /* Something of scenery, and how far from the eye it is. */
 typedef struct SceneryNear {
@@ -13,6 +13,9 @@ typedef struct SceneryNear {
 
 /* Sorts by range, equal ones by number, and returns how many stay: at most `most`. */
 int scenery_nearest(SceneryNear *near, int count, int most);
+
+/* Whether a ball about a place is in a cone, and how far off its middle is: at most most_m. */
+bool scenery_in_cone(double *range_m, const SceneryCone *seen, const double p_enu[3], double radius_m, double most_m);
 
 /* Room for more puffs behind the snapshot's own, up to effect_puff_capacity in all: *at, [*room], in the arena. The
  * caller counts them in. */

@@ -53,20 +53,19 @@ static bool any_loose(const Scenery *s, const SceneryMover *m)
     return loose;
 }
 
-/* Movers with soil on their way, within a range of the eye, the nearest first. */
-static Status movers_near(SceneryNear **out, int *count, const Scenery *s, const double eye_enu[3], double t_s,
-                          double reach_m, int most, Arena *arena)
+/* Movers with soil on their way, in view, the nearest first. */
+static Status movers_near(SceneryNear **out, int *count, const Scenery *s, const SceneryCone *seen, double t_s,
+                          double beside_m, double reach_m, int most, Arena *arena)
 {
     *count = 0;
     *out = arena_alloc(arena, (size_t)s->movers + 1, sizeof **out);
     if (!*out) return STATUS_NO_MEMORY;
     for (int k = 0; k < s->movers; k++) {
-        double p_enu[3], r[9], to[3];
+        double p_enu[3], r[9];
         if (!any_loose(s, &s->mover[k])) continue;
         scenery_pose(p_enu, r, s, &s->mover[k], t_s);
-        v3_sub(to, p_enu, eye_enu);
-        (*out)[*count] = (SceneryNear){v3_length(to), k};
-        *count += (*out)[*count].range_m < reach_m;
+        (*out)[*count].which = k;
+        *count += scenery_in_cone(&(*out)[*count].range_m, seen, p_enu, beside_m, reach_m);
     }
     *count = scenery_nearest(*out, *count, most);
     return STATUS_OK;
@@ -105,12 +104,14 @@ static void dust_of(EffectSource *out, const Scenery *s, const SceneryMover *m, 
     m3_mul(out->motion.r_ecef_from_body, frame->r_ecef_from_enu, r_enu_from_body);
 }
 
-Status scenery_dust(Snapshot *s, const Scenery *scenery, const LocalFrame *frame, const double eye_enu[3], Arena *arena)
+Status scenery_dust(Snapshot *s, const Scenery *scenery, const LocalFrame *frame, const SceneryCone *seen, Arena *arena)
 {
-    SceneryNear *near;
-    int          count, sources = 0;
+    static const double trail_m = 250; /* as far as dust hangs behind what is fast, in a wind */
+    SceneryNear        *near;
+    int                 count, sources = 0;
     if (scenery->movers == 0 || !s->effect_table || !scenery->smokes) return STATUS_OK;
-    Status status = movers_near(&near, &count, scenery, eye_enu, s->t_s, scenery_dusts_m, scenery_dusts_most, arena);
+    Status status =
+        movers_near(&near, &count, scenery, seen, s->t_s, trail_m, scenery_dusts_m, scenery_dusts_most, arena);
     if (status != STATUS_OK || count == 0) return status;
     EffectSource *source = arena_alloc(arena, (size_t)count * scenery_trail_pieces, sizeof *source);
     if (!source) return STATUS_NO_MEMORY;
@@ -179,7 +180,9 @@ Status scenery_marks(GroundMarks *out, const GroundMarks *own, const Scenery *s,
     int                 movers, ruts;
     *out = *own;
     if (s->movers == 0 && s->ruts == 0) return STATUS_OK;
-    Status status = movers_near(&mover, &movers, s, eye_enu, t_s, scenery_tracks_m, scenery_trails_most, arena);
+    const SceneryCone about = {.p_enu = {eye_enu[0], eye_enu[1], eye_enu[2]}};
+    Status            status =
+        movers_near(&mover, &movers, s, &about, t_s, scenery_tracks_m, scenery_tracks_m, scenery_trails_most, arena);
     if (status == STATUS_OK) status = ruts_near(&rut, &ruts, s, eye_enu, arena);
     if (status != STATUS_OK || movers + ruts == 0) return status;
     const size_t room = (size_t)own->tracks + (size_t)movers * scenery_trail_pieces + (size_t)ruts;

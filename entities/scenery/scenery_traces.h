@@ -12,7 +12,8 @@
 #include "entities/scenery/scenery.h"
 #include "terrain/earth/geodesy.h"
 
-/* Of more the nearest to the eye, and none beyond the range: marks there are a tenth of a pixel wide. */
+/* Of more the nearest to the eye, and none beyond the range: marks there are a tenth of a pixel wide. Dust only of what
+ * is in view, or drives near by it. */
 enum { scenery_dusts_most = 32, scenery_trails_most = 64, scenery_trail_pieces = 64, scenery_ruts_most = 8192 };
 static const double scenery_dusts_m = 3000, scenery_tracks_m = 2000;
 
@@ -27,7 +28,7 @@ int scenery_driven(SceneryStretch *out, int most, const Scenery *scenery, const 
                    double span_s);
 
 /* Puts the dust behind the snapshot's own puffs, as scenery_smoke does smoke. In the arena. */
-Status scenery_dust(Snapshot *snapshot, const Scenery *scenery, const LocalFrame *frame, const double eye_enu[3],
+Status scenery_dust(Snapshot *snapshot, const Scenery *scenery, const LocalFrame *frame, const SceneryCone *seen,
                     Arena *arena);
 
 /* own with the marks of scenery behind its tracks; own itself where there are none. In the arena. */

@@ -51,7 +51,7 @@ static Status add_scenery_puffs(Snapshot *snapshot, const World *world, const Vi
                               .d_enu = {r[2], r[5], r[8]},
                               .tangent = hypot(half[0], half[1])};
     Status            status = scenery_smoke(snapshot, scenery, &world->frame, view->p_enu, arena);
-    if (status == STATUS_OK) status = scenery_dust(snapshot, scenery, &world->frame, view->p_enu, arena);
+    if (status == STATUS_OK) status = scenery_dust(snapshot, scenery, &world->frame, &seen, arena);
     return status == STATUS_OK ? scenery_exhaust(snapshot, scenery, &world->frame, &seen, arena) : status;
 }
 

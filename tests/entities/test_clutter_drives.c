@@ -1,5 +1,5 @@
-/* Clutter that drives off the ways: over soil alone, clear of the exercise, ways and what stands, the same for any square
- * that holds it; and ruts of what came over soil and stands. */
+/* Clutter that drives off the ways: over soil alone, clear of the exercise, ways and what stands, the same for any
+ * square that holds it; and ruts of what came over soil and stands. */
 #include "tests/entities/clutter_fixture.h"
 
 static const char lorries[] = "lorry,lorry,,field,40,1,1,0,0,0,drives,0,0\n"
@@ -75,8 +75,8 @@ static void ruts_lie_behind_what_came(void **state)
     (void)state;
     ClutterConfig c = about(&plain, 1200);
     Scenery       s = add_rows(&c, "lorry,lorry,,field,100,1,1,0,0,0,engine,0.2,0.5\n"
-                                   "crates,crates,,field,100,1,1,0,0,0,cold,0,0\n"
-                                   "car,car,,road,8,1,1,0,0,0,engine,0.2,0.5");
+                                         "crates,crates,,field,100,1,1,0,0,0,cold,0,0\n"
+                                         "car,car,,road,8,1,1,0,0,0,engine,0.2,0.5");
     int           with = 0, stands = 0;
     CHECK(s.ruts > 100);
     for (int k = 0; k < s.objects; k++) stands += s.object[k].class == CLUTTER_LORRY;

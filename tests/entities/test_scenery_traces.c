@@ -77,8 +77,9 @@ static const double eye[3] = {0, 0, 300};
 
 static Snapshot dust_at(double t_s)
 {
-    Snapshot s = {.t_s = t_s, .effect_table = &stage.table};
-    assert_int_equal(scenery_dust(&s, &stage.scenery, &stage.frame, eye, stage.arena), STATUS_OK);
+    Snapshot          s = {.t_s = t_s, .effect_table = &stage.table};
+    const SceneryCone down = {.p_enu = {0, 0, 300}, .d_enu = {0, 0, -1}, .tangent = 5};
+    assert_int_equal(scenery_dust(&s, &stage.scenery, &stage.frame, &down, stage.arena), STATUS_OK);
     return s;
 }
 
@@ -244,6 +245,11 @@ static void numbers_are_bounded(void **state)
         if (!known) owner[owners++] = s.puff[k].owner;
     }
     CHECK(owners == scenery_dusts_most);
+    /* none of it in view */
+    Snapshot          up = {.t_s = 77, .effect_table = &stage.table};
+    const SceneryCone away = {.p_enu = {0, -2000, 300}, .d_enu = {0, -1, 0}, .tangent = 0.3};
+    assert_int_equal(scenery_dust(&up, &stage.scenery, &stage.frame, &away, stage.arena), STATUS_OK);
+    CHECK(up.puff_count == 0);
 }
 
 /* What runs and is in view gives off gas, as an entity with an engine does: five puffs behind its pipe. */
