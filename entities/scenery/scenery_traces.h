@@ -3,9 +3,9 @@
  *
  * The same as of entities (entities/traces/vehicle_traces.h): dust as puffs of the row `dust` of etc/effects.csv, of a
  * small trail at 10 m/s and with the 1.5th power of its speed (a kilometre's is that of the square root of speed: US
- * EPA AP-42, 13.2.2, public unpaved roads; times how many a second); marks as GroundTrack, which heat and loosen.
- * Motion is a closed form of time, so is all of it: a pure function of scenery, time and eye. Nothing lies ahead of
- * what drives but what it left on its last round. Paved ways, rock and water have none of it. */
+ * EPA AP-42, 13.2.2, public unpaved roads, typed from knowledge; times how many a second); marks as GroundTrack, which
+ * heat and loosen. Motion is a closed form of time, so is all of it: a pure function of scenery, time and eye. Nothing
+ * lies ahead of what drives but what it left on its last round. Paved ways, rock and water have none of it. */
 #ifndef ENTITIES_SCENERY_SCENERY_TRACES_H
 #define ENTITIES_SCENERY_SCENERY_TRACES_H
 

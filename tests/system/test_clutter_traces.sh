@@ -9,13 +9,12 @@ duration_s: 6
 place: {lat_deg: 50.1, lon_deg: 8.6, height_m: 120}
 vehicles: [{name: Tank, id: 11, type: 1.1.222.1.1.1.0, force: 2, route_m: [[0, 0]]}]
 Y
-head=class,shape,paint,where,density,group_low,group_high,spread_m,length_low_m,length_high_m,heat,running,recent
-table() { # table FILE HEAT: lorries that drive over fields and pasture, or stand there
+head=class,shape,paint,where,density,group_low,group_high,spread_m,length_low_m,length_high_m,heat,running,recent,reach_m
+table() { # lorries that drive over fields and pasture
     echo "$head"
-    for where in field pasture; do echo "lorry,lorry,,$where,60,1,1,0,0,0,$1"; done
+    for where in field pasture; do echo "lorry,lorry,,$where,90,1,1,0,0,0,drives,0,0,1000"; done
 }
-table drives,0,0 >"$tmp/drives.csv"
-table cold,0,0 >"$tmp/stands.csv"
+table >"$tmp/drives.csv"
 cp -r etc "$tmp/still" # tables by which no dust is raised, and engines give off nothing
 awk -F, -v OFS=, '/^(dust|exhaust),/ { $15 = 1e-12 } 1' etc/effects.csv >"$tmp/still/effects.csv"
 check "the table without dust differs" not cmp -s etc/effects.csv "$tmp/still/effects.csv"
@@ -36,7 +35,6 @@ check "the same bits without skips" same_hashes "$tmp/one" "$tmp/whole"
 check "the same bits from its file" [ "$(grep -oE 'frame [0-9a-f]{64}' "$tmp/stdout" | cut -d' ' -f2)" = \
     "$(grep -oE '"frame_sha256":"[0-9a-f]{64}' "$tmp/one/truth.jsonl" | tail -1 | cut -d'"' -f4)" ]
 PITVIPER_ETC=$tmp/still seen still
-PITVIPER_ETC=$tmp/still seen stands --set terrain.clutter_table="$tmp/stands.csv"
 
 # Pixels of bare ground that dust changes, and how far in standard deviations of the ground
 python3 - "$tmp" >"$tmp/found" <<'P'
