@@ -2,8 +2,6 @@
  * ground; without it, as if there were no such thing. labels: physics */
 #include "tests/render/hand_world.h"
 
-#include "entities/shapes/parametric.h"
-
 static const double noon_s = 1782000000 + 43200; /* of 2026-06-21 at 0 E */
 
 static int open_stage(void **state)
@@ -31,7 +29,9 @@ static void behind_what_drives(void **state)
     Model               model;
     HeatConfig          config = heat_default_config();
     GroundMarks         seen, own = {0};
-    assert_int_equal(parametric_build(&model, "lorry", 0.01), STATUS_OK);
+    hand_box(&model, (const double[3]){-4, -1.25, -3}, (const double[3]){4, 1.25, 0});
+    strcpy(model.part[0].name, "wall"), strcpy(model.part[0].material, "metal_steel_galvanized");
+    model.length_m = 8, model.width_m = 2.5, model.height_m = 3;
     SceneryState  cold = {0};
     SceneryObject object = {
         .id = 5, .kind = SCENERY_CLUTTER, .class = CLUTTER_LORRY, .r_enu_from_body = {0, 1, 0, 1, 0, 0, 0, 0, -1}};
