@@ -26,7 +26,13 @@ typedef enum SurfaceClass {
     SURFACE_COUNT
 } SurfaceClass;
 
-const char  *surface_name(SurfaceClass surface);
+const char *surface_name(SurfaceClass surface);
+/* Soil and what grows on it, that wheels tear open and raise dust from. */
+static inline bool surface_loosens(int surface)
+{
+    return (surface >= SURFACE_GRASS && surface <= SURFACE_TRACK) || surface == SURFACE_SCRUB ||
+           surface == SURFACE_WETLAND;
+}
 SurfaceClass surface_find(const char *name); /* SURFACE_NONE: no such class, or "none" */
 /* Of the column `surface` of tables: TABLE_NAMED of a SurfaceClass; with "none", or without. */
 const char *surface_named(int surface);

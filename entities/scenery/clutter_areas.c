@@ -29,6 +29,7 @@ static Status place_group(ClutterWork *work, int r, uint64_t h, double x_m, doub
     /* members of a group are of one kind and size: a flock, a heap of bales */
     const int variant = clutter_variant_of(work, r, h);
     Status    status = STATUS_OK;
+    if (row->heat == CLUTTER_DRIVES) return clutter_place_off_ways(work, r, h, x_m, y_m);
     if (count > 1 && !clutter_is_area(work->config->landscape, row->where, x_m, y_m)) return STATUS_OK;
     for (int k = 0; k < count && status == STATUS_OK; k++) {
         const uint64_t of = invented_hash(h, k, 5);
@@ -54,7 +55,8 @@ Status clutter_place_areas(ClutterWork *work)
         if (row->where < CLUTTER_AREAS) continue;
         const double mean =
             c->density * row->density * 1e-6 * cell_m * cell_m / (0.5 * (row->group_low + row->group_high));
-        const double  reach_m = clutter_margin_m + widest * row->spread_m;
+        const double reach_m =
+            clutter_margin_m + (row->heat == CLUTTER_DRIVES ? clutter_off_ways_m : widest * row->spread_m);
         const int64_t i0 = (int64_t)floor((c->south_west_m[0] - reach_m) / cell_m);
         const int64_t j0 = (int64_t)floor((c->south_west_m[1] - reach_m) / cell_m);
         const int64_t i1 = (int64_t)floor((c->north_east_m[0] + reach_m) / cell_m);

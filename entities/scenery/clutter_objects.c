@@ -10,6 +10,7 @@ static EntityDrives drives_of(int mode)
     /* cruising takes a civil vehicle a sixth of its full power; of that the gas of its engine is to be as warm, between
      * idling (0.6) and full power; estimate */
     static const double cruises = 0.75, works = 0.9; /* works: a machine at most of its power */
+    static const double climbs = 0.85; /* over soil: rolling resistance of 9 %, 100 of 240 kW at 20 km/h */
     EntityDrives        drives = {0};
     if (mode == clutter_mode_idles) drives.engine = (float)drives_idle;
     else if (mode == clutter_mode_works) drives.engine = (float)works;
@@ -17,7 +18,7 @@ static EntityDrives drives_of(int mode)
     else if (mode == clutter_mode_burns) drives.burning = 1;
     else if (mode >= clutter_mode_stopped) drives.engine = (float)cruises;
     else if (mode >= clutter_mode_drives) {
-        drives.engine = (float)cruises;
+        drives.engine = (float)(mode - clutter_mode_drives == clutter_off_ways ? climbs : cruises);
         drives.speed_mps = (float)clutter_speed_mps[mode - clutter_mode_drives];
     }
     return drives;
@@ -30,6 +31,8 @@ static double stood_s_of(int mode)
            pow(clutter_stop_most_s / clutter_stop_least_s, (mode - clutter_mode_stopped + 0.5) / clutter_stops);
 }
 
+enum { most_ruts = 1 << 18 };
+
 /* How finely states are told apart: clutter_headings and clutter_stops, or fewer. */
 typedef struct Grain {
     int headings, stops;
@@ -41,6 +44,7 @@ typedef struct Added {
     Grain   grain;
     int    *state_of; /* [variants][clutter_modes][clutter_headings]; -1: none yet */
     int    *path_of;  /* [paths] */
+    int     rut_room; /* of scenery.rut */
 } Added;
 
 /* The mode that stands for a mode: of several steps of time the middle one. */
@@ -57,9 +61,10 @@ static int coarse_heading(double heading_rad, Grain grain)
     return (turn + grain.headings) % grain.headings * (clutter_headings / grain.headings);
 }
 
-static int *state_at(const Added *a, const ClutterThing *t)
+static int *state_at(const Added *a, const ClutterWork *work, const ClutterThing *t)
 {
-    return &a->state_of[(t->variant * clutter_modes + coarse_mode(t->mode, a->grain)) * clutter_headings +
+    return &a->state_of[(work->variant[t->variant].same * clutter_modes + coarse_mode(t->mode, a->grain)) *
+                            clutter_headings +
                         coarse_heading(t->heading_rad, a->grain)];
 }
 
@@ -73,7 +78,7 @@ static Grain choose_grain(Added *a, const ClutterWork *work, size_t room)
         a->grain = grains[g];
         memset(a->state_of, 0, room * sizeof *a->state_of);
         for (int n = 0; n < work->things; n++) {
-            int *at = state_at(a, &work->thing[n]);
+            int *at = state_at(a, work, &work->thing[n]);
             states += !*at, *at = 1;
         }
         memset(a->state_of, -1, room * sizeof *a->state_of);
@@ -84,13 +89,13 @@ static Grain choose_grain(Added *a, const ClutterWork *work, size_t room)
 static Status add_thing(Added *a, ClutterWork *work, const ClutterThing *t)
 {
     Scenery        *s = &a->scenery;
-    ClutterVariant *v = &work->variant[t->variant];
+    ClutterVariant *v = &work->variant[work->variant[t->variant].same];
     Status          status = STATUS_OK;
-    if (*state_at(a, t) < 0 && s->states == work->config->most_states) {
+    if (*state_at(a, work, t) < 0 && s->states == work->config->most_states) {
         work->left_out++;
         return STATUS_OK;
     }
-    SceneryObject o = {.id = t->rank, .kind = SCENERY_CLUTTER, .class = (uint8_t)v->row->class};
+    SceneryObject o = {.id = t->rank, .kind = SCENERY_CLUTTER, .class = (uint8_t)work->table.row[t->row].class};
     if (!clutter_pose(o.p_enu, o.r_enu_from_body, work->config->landscape, t->x_m, t->y_m, t->heading_rad, v->size_m,
                       t->mode == clutter_mode_lives || t->mode == clutter_mode_burns))
         return STATUS_OK;
@@ -99,7 +104,7 @@ static Status add_thing(Added *a, ClutterWork *work, const ClutterThing *t)
         if (status != STATUS_OK) return status;
         v->model = s->models++;
     }
-    int *state = state_at(a, t);
+    int *state = state_at(a, work, t);
     if (*state < 0) {
         const int mode = coarse_mode(t->mode, a->grain), heading = coarse_heading(t->heading_rad, a->grain);
         *state = s->states;
@@ -113,6 +118,7 @@ static Status add_thing(Added *a, ClutterWork *work, const ClutterThing *t)
         if (a->path_of[t->path] < 0) {
             a->path_of[t->path] = s->paths;
             memcpy(s->path_enu + s->paths, work->path + t->path, (size_t)t->path_count * sizeof *s->path_enu);
+            memcpy(s->path_loose + s->paths, work->path_loose + t->path, (size_t)t->path_count);
             s->paths += t->path_count;
         }
         const SceneryMover mover = {s->objects, a->path_of[t->path], t->path_count, (double)t->speed_mps,
@@ -120,6 +126,7 @@ static Status add_thing(Added *a, ClutterWork *work, const ClutterThing *t)
         scenery_pose(o.p_enu, o.r_enu_from_body, s, &mover, 0);
         s->mover[s->movers++] = mover;
     }
+    s->ruts += clutter_ruts_of(s->rut + s->ruts, a->rut_room - s->ruts, work, t, s->objects);
     s->object[s->objects++] = o;
     return STATUS_OK;
 }
@@ -140,7 +147,9 @@ static Status join(Scenery *to, Scenery *from)
         !grow(&to->object, to->objects, from->objects, sizeof *to->object) ||
         !grow(&to->state, to->states, from->states, sizeof *to->state) ||
         !grow(&to->mover, to->movers, from->movers, sizeof *to->mover) ||
-        !grow(&to->path_enu, to->paths, from->paths, sizeof *to->path_enu))
+        !grow(&to->path_enu, to->paths, from->paths, sizeof *to->path_enu) ||
+        !grow(&to->path_loose, to->paths, from->paths, sizeof *to->path_loose) ||
+        !grow(&to->rut, to->ruts, from->ruts, sizeof *to->rut))
         return STATUS_NO_MEMORY;
     const bool fresh = !to->part_first;
     if (!grow(&to->part_first, to->models, from->models, sizeof *to->part_first)) return STATUS_NO_MEMORY;
@@ -159,9 +168,12 @@ static Status join(Scenery *to, Scenery *from)
         SceneryMover *m = &to->mover[to->movers + k];
         *m = from->mover[k], m->object += to->objects, m->first += to->paths;
     }
+    for (int k = 0; k < from->ruts; k++)
+        to->rut[to->ruts + k] = from->rut[k], to->rut[to->ruts + k].object += to->objects;
     if (from->paths) memcpy(to->path_enu + to->paths, from->path_enu, (size_t)from->paths * sizeof *to->path_enu);
+    if (from->paths) memcpy(to->path_loose + to->paths, from->path_loose, (size_t)from->paths);
     to->models += from->models, to->objects += from->objects, to->states += from->states;
-    to->movers += from->movers, to->paths += from->paths;
+    to->movers += from->movers, to->paths += from->paths, to->ruts += from->ruts;
     from->models = 0;
     return STATUS_OK;
 }
@@ -177,10 +189,13 @@ Status clutter_into_scenery(Scenery *scenery, ClutterWork *work)
     a.scenery.state = calloc(states, sizeof *a.scenery.state);
     a.scenery.mover = calloc(things, sizeof *a.scenery.mover);
     a.scenery.path_enu = calloc((size_t)work->paths + 1, sizeof *a.scenery.path_enu);
+    a.scenery.path_loose = calloc((size_t)work->paths + 1, 1);
+    a.rut_room = work->things < most_ruts / clutter_ruts_each ? work->things * clutter_ruts_each : most_ruts;
+    a.scenery.rut = calloc((size_t)a.rut_room + 1, sizeof *a.scenery.rut);
     a.state_of = malloc(states * sizeof *a.state_of);
     a.path_of = malloc(((size_t)work->paths + 1) * sizeof *a.path_of);
     if (!a.scenery.model || !a.scenery.object || !a.scenery.state || !a.scenery.mover || !a.scenery.path_enu ||
-        !a.state_of || !a.path_of)
+        !a.scenery.path_loose || !a.scenery.rut || !a.state_of || !a.path_of)
         status = STATUS_NO_MEMORY;
     else {
         a.grain = choose_grain(&a, work, states);

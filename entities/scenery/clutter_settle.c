@@ -43,6 +43,30 @@ static int first_of(const Spot *spot, int count, int64_t cell)
     return low;
 }
 
+/* What stands in the way of what drives off the ways goes. */
+static void clear_ways(bool *goes, const ClutterWork *work, const Spot *spot, int spots)
+{
+    static const double half_m = 1.6; /* of what drives, and a gap */
+    enum { parts = 3 };
+    for (int n = 0; n < work->things; n++) {
+        const ClutterThing *t = &work->thing[n];
+        if (work->table.row[t->row].where < CLUTTER_AREAS) continue;
+        for (int part = 0; part < t->path_count * parts; part++) {
+            const double *a = work->path[t->path + part / parts],
+                         *b = work->path[t->path + (part / parts + 1) % t->path_count];
+            const double share = (double)(part % parts) / parts;
+            const double x = a[0] + share * (b[0] - a[0]), y = a[1] + share * (b[1] - a[1]);
+            for (int k = 0; k < 9; k++) {
+                const int64_t cell = spot_cell(x, y, k % 3 - 1, k / 3 - 1);
+                for (int s = first_of(spot, spots, cell); s < spots && spot[s].cell == cell; s++) {
+                    const ClutterThing *o = &work->thing[spot[s].thing];
+                    goes[spot[s].thing] |= hypot(o->x_m - x, o->y_m - y) < (double)o->radius_m + half_m;
+                }
+            }
+        }
+    }
+}
+
 /* Of two things that touch the one of higher rank goes, whether or not the other stays: so what stays at a place
  * follows from what is near it alone. Things are sorted by rank. */
 static Status keep_apart(ClutterWork *work)
@@ -69,6 +93,7 @@ static Status keep_apart(ClutterWork *work)
             }
         }
     }
+    clear_ways(goes, work, spot, spots);
     for (int n = 0; n < work->things; n++) {
         const ClutterThing t = work->thing[n];
         if (!goes[n] && clutter_in_square(work->config, t.x_m, t.y_m, 0)) work->thing[kept++] = t;

@@ -31,6 +31,12 @@ static const char *parse_paint(void *out, const char *text)
     return NULL;
 }
 
+static bool is_driven(ClutterWhere where)
+{
+    return where < CLUTTER_YARDS || where == CLUTTER_IN_FIELD || where == CLUTTER_IN_PASTURE ||
+           where == CLUTTER_IN_SCRUB || where == CLUTTER_AT_EDGE;
+}
+
 #define FIELD(member) TABLE_AT(ClutterRow, member)
 
 static Status take_row(void *user, const void *read, const TableRows *rows, int number)
@@ -45,8 +51,12 @@ static Status take_row(void *user, const void *read, const TableRows *rows, int 
     if (row->running + row->recent > 1) return table_rows_refuse(rows, number, "recent", "at most 1 - running");
     if (row->heat != CLUTTER_ENGINE && row->heat != CLUTTER_WORKS && row->running + row->recent > 0)
         return table_rows_refuse(rows, number, "running", "0 without an engine (heat)");
-    if (row->heat == CLUTTER_DRIVES && row->where >= CLUTTER_YARDS)
-        return table_rows_refuse(rows, number, "heat", "that of what stands: only on road, lane and track is driven");
+    if (row->heat == CLUTTER_DRIVES && !is_driven(row->where))
+        return table_rows_refuse(rows, number, "heat",
+                                 "that of what stands: only on road, lane and track, and over field, pasture, scrub "
+                                 "and edge is driven");
+    if (row->heat == CLUTTER_DRIVES && row->group_high > 1)
+        return table_rows_refuse(rows, number, "group_high", "1 of what drives");
     if (row->group_high > 1 && row->where < CLUTTER_AREAS)
         return table_rows_refuse(rows, number, "group_high", "1 where nothing stands in groups: on ways and in yards");
     table->row[table->rows++] = *row;

@@ -19,6 +19,18 @@ static bool paint_of(char out[32], const ClutterRow *row, int n)
     return *out;
 }
 
+static int same_as(const ClutterWork *work, const ClutterVariant *v)
+{
+    int k = 0;
+    for (; &work->variant[k] < v; k++) {
+        const ClutterVariant *o = &work->variant[k];
+        if (strcmp(o->row->shape, v->row->shape) == 0 && strcmp(o->paint, v->paint) == 0 &&
+            !(o->length_m < v->length_m) && !(o->length_m > v->length_m))
+            break;
+    }
+    return k;
+}
+
 Status clutter_make_variants(ClutterWork *work)
 {
     const ClutterTable *table = &work->table;
@@ -48,6 +60,7 @@ Status clutter_make_variants(ClutterWork *work)
         }
     }
     work->first_variant[table->rows] = work->variants;
+    for (int k = 0; k < work->variants; k++) work->variant[k].same = same_as(work, &work->variant[k]);
     return STATUS_OK;
 }
 

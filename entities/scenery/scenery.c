@@ -15,8 +15,8 @@ void scenery_free(Scenery *scenery)
 {
     for (int k = 0; k < scenery->models; k++) model_destroy(&scenery->model[k]);
     free(scenery->model), free(scenery->object), free(scenery->state), free(scenery->mover);
-    free(scenery->path_enu), free(scenery->part_of), free(scenery->part_first), free(scenery->lamp),
-        free(scenery->harm);
+    free(scenery->path_enu), free(scenery->path_loose), free(scenery->rut), free(scenery->part_of),
+        free(scenery->part_first), free(scenery->lamp), free(scenery->harm);
     *scenery = (Scenery){0};
 }
 

@@ -61,6 +61,13 @@ typedef struct SceneryMover {
     double speed_mps, phase_m;
 } SceneryMover;
 
+/* One straight piece of the way by which an object came that stands. */
+typedef struct SceneryRut {
+    int    object;
+    float  came_s;             /* how long before exercise time 0 it came */
+    double a_enu[3], b_enu[3]; /* middle between its wheels, on the ground */
+} SceneryRut;
+
 /* What lights by night (entities/scenery/scenery_lamps.h). */
 typedef enum SceneryLampKind { LAMP_WINDOW, LAMP_STREET, LAMP_VEHICLE, LAMP_KINDS } SceneryLampKind;
 typedef struct SceneryLamp {
@@ -85,7 +92,10 @@ typedef struct Scenery {
     SceneryObject *object; /* [objects] */
     SceneryState  *state;
     SceneryMover  *mover;
-    double (*path_enu)[3]; /* [paths] */
+    double (*path_enu)[3];  /* [paths] */
+    uint8_t    *path_loose; /* [paths]; 1: what wheels loosen and raise dust from, from this corner to the next */
+    int         ruts;
+    SceneryRut *rut; /* [ruts]; what stands came along them */
     /* of the parts of buildings: the record each belongs to, model by model: part p of model m is of building
      * part_of[part_first[m] + p] (Building.id); 0: of none */
     uint64_t    *part_of;
@@ -95,6 +105,12 @@ typedef struct Scenery {
     int          harms;
     SceneryHarm *harm; /* [harms] */
 } Scenery;
+
+/* What is looked at: all within a cone. */
+typedef struct SceneryCone {
+    double p_enu[3], d_enu[3]; /* eye; unit vector along its axis */
+    double tangent;            /* of the half angle */
+} SceneryCone;
 
 void scenery_free(Scenery *scenery); /* accepts zeroes */
 

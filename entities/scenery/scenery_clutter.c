@@ -54,7 +54,8 @@ Status clutter_add(ClutterWork *work, ClutterThing t)
     t.mode = clutter_mode_cold;
     if (row->heat == CLUTTER_LIVES) t.mode = clutter_mode_lives;
     else if (row->heat == CLUTTER_BURNS) t.mode = clutter_mode_burns;
-    else if (row->heat == CLUTTER_DRIVES) t.mode = clutter_mode_drives + (int)row->where;
+    else if (row->heat == CLUTTER_DRIVES)
+        t.mode = clutter_mode_drives + (row->where < CLUTTER_YARDS ? (int)row->where : (int)clutter_off_ways);
     else if (u < row->running) t.mode = row->heat == CLUTTER_WORKS ? clutter_mode_works : clutter_mode_idles;
     else if (u < row->running + row->recent)
         t.mode = clutter_mode_stopped + (int)(clutter_unit(t.rank, 92) * clutter_stops);
@@ -104,6 +105,6 @@ Status scenery_add_clutter(Scenery *scenery, const ClutterConfig *config)
                    scenery->states, scenery->movers);
     else if (status == STATUS_NO_MEMORY) log_error("clutter: no memory; next: a smaller terrain.clutter");
     clutter_spots_destroy(work->spots);
-    free(work->variant), free(work->thing), free(work->path), free(work);
+    free(work->variant), free(work->thing), free(work->path), free(work->path_loose), free(work);
     return status;
 }

@@ -4,6 +4,8 @@
  * clutter_ground.c  what is free: evidence, ways, culture, surface, slope
  * clutter_areas.c   things by area: animals, rocks, machines in the fields
  * clutter_lines.c   things beside roads, and what drives on them
+ * clutter_drives.c  what drives on a line, there and back; off the ways too
+ * clutter_ruts.c    the lines of wheels behind what came over soil and stands
  * clutter_yards.c   things about houses, barns and halls, and in the open of yards
  * clutter_variants.c  shapes in their paints and sizes
  * clutter_settle.c  conflicts between things, and limits
@@ -47,9 +49,12 @@ typedef enum ClutterWhere {
 static const double clutter_edge_m = 12;
 static const double clutter_margin_m = 24; /* things that far outside of the square may stand in others' way */
 
-/* Mean speeds on roads, lanes and tracks without traffic: a minor rural road, a village's lane with its 30 km/h, a
- * track of gravel. Estimates; each way has its own, within a fifth. */
-static const double clutter_speed_mps[CLUTTER_YARDS] = {60 / 3.6, 30 / 3.6, 15 / 3.6};
+/* Kinds of line that is driven: those of ways, and over soil off the ways. */
+enum { clutter_off_ways = CLUTTER_YARDS, clutter_line_kinds };
+
+/* Mean speeds on roads, lanes and tracks without traffic, and off the ways: a minor rural road, a village's lane with
+ * its 30 km/h, a track of gravel, a field. Estimates; each way has its own, within a fifth. */
+static const double clutter_speed_mps[clutter_line_kinds] = {60 / 3.6, 30 / 3.6, 15 / 3.6, 20 / 3.6};
 
 /* What heats a thing of a row. */
 typedef enum ClutterHeat {
@@ -104,8 +109,8 @@ enum {
     clutter_mode_works,
     clutter_mode_lives,
     clutter_mode_burns,
-    clutter_mode_drives,                                        /* one a kind of line */
-    clutter_mode_stopped = clutter_mode_drives + CLUTTER_YARDS, /* one a step of time */
+    clutter_mode_drives,                                             /* one a kind of line */
+    clutter_mode_stopped = clutter_mode_drives + clutter_line_kinds, /* one a step of time */
     clutter_modes = clutter_mode_stopped + clutter_stops,
 };
 
@@ -116,6 +121,7 @@ typedef struct ClutterVariant {
     double            length_m;  /* 0: the shape's own */
     float             size_m[3]; /* length, width, height */
     int               model;     /* of the scenery; -1: not built yet */
+    int               same;      /* the first variant of this shape, paint and size, whose model and states it shares */
 } ClutterVariant;
 
 typedef struct ClutterSpots ClutterSpots; /* clutter_ground.c */
@@ -131,7 +137,8 @@ typedef struct ClutterWork {
     ClutterThing        *thing;
     int                  paths, path_room;
     double (*path)[3];
-    int left_out; /* for want of states */
+    uint8_t *path_loose; /* [paths]; Scenery.path_loose */
+    int      left_out;   /* for want of states */
 } ClutterWork;
 
 /* ---- the ground: clutter_ground.c ------------------------------------------------------------- */
@@ -149,6 +156,28 @@ bool clutter_can_stand(const ClutterSpots *spots, double x_m, double y_m, double
 bool clutter_pose(double p_enu[3], double r_enu_from_body[9], const Landscape *landscape, double x_m, double y_m,
                   double heading_rad, const float size_m[3], bool upright);
 
+/* ---- what drives: clutter_drives.c -------------------------------------------------------------- */
+
+enum { clutter_most_riders = 64 };
+
+typedef struct ClutterLine {
+    double (*p)[2]; /* [count] */
+    int      count, kind;
+    double   half_m, length_m;
+    uint64_t key;
+} ClutterLine;
+
+void clutter_line_measure(ClutterLine *line);
+/* Lets these drive along a line, there half of half_m right of its middle and back on the other side: sorts them, sets
+ * their places, paths and speeds, and adds those within more_m of the square. As many as find room. */
+Status clutter_add_riders(ClutterWork *work, const ClutterLine *line, ClutterThing *rider, int riders, double more_m);
+/* Whether a vehicle may pass a place: the exercise needs no room there. */
+bool clutter_may_pass(const ClutterWork *work, const double p[2]);
+/* How far from where it is at exercise time 0 something drives that does so off the ways. */
+static const double clutter_off_ways_m = 420;
+/* A thing that drives off the ways, about a place; none where there is no room. */
+Status clutter_place_off_ways(ClutterWork *work, int row, uint64_t h, double x_m, double y_m);
+
 /* ---- who places: a file each ------------------------------------------------------------------ */
 
 Status clutter_place_areas(ClutterWork *work);
@@ -163,6 +192,10 @@ Status clutter_build_variant(Model *out, const ClutterVariant *v, double sag_m);
 /* Sorts things by rank, and leaves those in the square that stay. */
 Status clutter_settle(ClutterWork *work);
 Status clutter_into_scenery(Scenery *scenery, ClutterWork *work);
+/* The ruts of a thing that came over soil and stands, as object of the scenery; room: of SceneryRut. Returns how many.
+ */
+int clutter_ruts_of(SceneryRut *out, int room, const ClutterWork *work, const ClutterThing *thing, int object);
+enum { clutter_ruts_each = 8 };
 
 /* ---- numbers and lists: scenery_clutter.c ------------------------------------------------------- */
 

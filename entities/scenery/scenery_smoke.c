@@ -1,21 +1,7 @@
 /* entities/scenery/scenery_smoke.c: which fires smoke, and their puffs. */
 #include "entities/scenery/scenery_smoke.h"
 
-#include "entities/traces/effect_history.h"
-
-#include <stdlib.h>
-
-typedef struct Near {
-    double range_m;
-    int    object;
-} Near;
-
-static int by_range(const void *pa, const void *pb)
-{
-    const Near *a = pa, *b = pb;
-    return a->range_m != b->range_m ? (a->range_m > b->range_m) - (a->range_m < b->range_m)
-                                    : (a->object > b->object) - (a->object < b->object);
-}
+#include "entities/scenery/scenery_puffs_private.h"
 
 static bool smokes(const SceneryObject *o)
 {
@@ -47,38 +33,20 @@ static void source_of(EffectSource *out, const Scenery *scenery, int object, con
 Status scenery_smoke(Snapshot *s, const Scenery *scenery, const LocalFrame *frame, const double eye_enu[3],
                      Arena *arena)
 {
-    int          fires = 0, count = 0;
-    size_t       all = 0;
-    EffectSource source;
+    int fires = 0, count = 0;
     for (int k = 0; k < scenery->objects; k++) fires += smokes(&scenery->object[k]);
     if (fires == 0 || !s->effect_table || !scenery->smokes) return STATUS_OK;
-    Near *near = arena_alloc(arena, (size_t)fires, sizeof *near);
-    if (!near) return STATUS_NO_MEMORY;
+    SceneryNear  *near = arena_alloc(arena, (size_t)fires, sizeof *near);
+    EffectSource *source = arena_alloc(arena, scenery_smokes_most, sizeof *source);
+    if (!near || !source) return STATUS_NO_MEMORY;
     for (int k = 0; k < scenery->objects; k++) {
         double to[3];
         if (!smokes(&scenery->object[k])) continue;
         v3_sub(to, scenery->object[k].p_enu, eye_enu);
-        near[count] = (Near){v3_length(to), k};
+        near[count] = (SceneryNear){v3_length(to), k};
         count += near[count].range_m < scenery_smokes_m;
     }
-    qsort(near, (size_t)count, sizeof *near, by_range);
-    if (count > scenery_smokes_most) count = scenery_smokes_most;
-    for (int k = 0; k < count; k++) {
-        source_of(&source, scenery, near[k].object, frame);
-        all += effect_source_puffs(NULL, 0, s->effect_table, &source, s->t_s);
-    }
-    const size_t was = (size_t)s->puff_count, room = effect_puff_capacity - was, more = all < room ? all : room;
-    if (all == 0) return STATUS_OK;
-    EffectPuff *puff = arena_alloc_raw(arena, was + more + 1, sizeof *puff);
-    if (!puff) return STATUS_NO_MEMORY;
-    if (was > 0) memcpy(puff, s->puff, was * sizeof *puff);
-    size_t at = was;
-    for (int k = 0; k < count && at < was + more; k++) {
-        source_of(&source, scenery, near[k].object, frame);
-        const size_t left = was + more - at,
-                     of = effect_source_puffs(puff + at, left, s->effect_table, &source, s->t_s);
-        at += of < left ? of : left;
-    }
-    s->puff = puff, s->puff_count = (int)at;
-    return STATUS_OK;
+    count = scenery_nearest(near, count, scenery_smokes_most);
+    for (int k = 0; k < count; k++) source_of(&source[k], scenery, near[k].which, frame);
+    return scenery_add_puffs(s, source, count, arena);
 }

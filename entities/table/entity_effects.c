@@ -1,14 +1,10 @@
 /* entities/table/entity_effects.c: emissions by an entity's appearance and motion. Appearance bits are those of
  * dis/pdu/pdu.h; a guided munition's motor burns for the time given by drives.c, independent of its bits. */
 #include "entities/table/entity_table_private.h"
+#include "entities/traces/exhaust.h"
+#include "entities/traces/vehicle_traces.h"
 
 static const double moving_mps = 0.3; /* the limit of drives.c: stationary entities raise no dust */
-
-/* Scale of flames and smoke by the size of the burning entity; 1 for a vehicle of 40 m3. */
-static double size_of(const Model *model)
-{
-    return clamp(cbrt(model->length_m * model->width_m * model->height_m / 40), 0.25, 4);
-}
 
 static bool motor_burns(const EntitySlot *slot, double t_s)
 {
@@ -41,12 +37,11 @@ void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s)
 
 void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
 {
-    static const double trail_rate[4] = {0, 0.35, 1, 2.5}; /* none, small, medium, large; estimate */
-    const uint32_t      bits = slot->appearance;
-    const bool platform = slot->type.kind == dis_kind_platform, munition = slot->type.kind == dis_kind_munition;
-    const bool air = slot->type.domain == dis_domain_air;
-    const int  smoke = bits >> dis_appearance_smoke_shift & 3, trail = bits >> dis_appearance_trail_shift & 3;
-    const bool flames = bits >> dis_appearance_flaming_bit & 1;
+    const uint32_t bits = slot->appearance;
+    const bool     platform = slot->type.kind == dis_kind_platform, munition = slot->type.kind == dis_kind_munition;
+    const bool     air = slot->type.domain == dis_domain_air;
+    const int      smoke = bits >> dis_appearance_smoke_shift & 3, trail = bits >> dis_appearance_trail_shift & 3;
+    const bool     flames = bits >> dis_appearance_flaming_bit & 1;
 
     entity_effects_end(table, slot, t_s);
     if (!(platform || munition) || !(flames || smoke || trail || motor_burns(slot, t_s))) return;
@@ -60,7 +55,7 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
                            .motion = slot->reported,
                            .motion_s = slot->report_s + slot->paused_s,
                            .hold_s = slot->hold_s,
-                           .scale = size_of(model),
+                           .scale = vehicle_effect_scale(model),
                            .below_m = below_m,
                            .grounded = contact_applies(slot->type)};
     if (stands) {
@@ -95,10 +90,9 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
     }
     if (platform && trail && (air || source.speed_mps > moving_mps)) {
         EffectSource behind = source;
-        behind.at_body[0] = model->box_low[0];
-        behind.at_body[2] = air ? below_m - 0.5 * model->height_m : below_m - 0.3;
-        behind.spread_body[1] = air ? 0 : 0.4 * model->width_m;
-        open_source(table, slot, 3, &behind, air ? EFFECT_CONTRAIL : EFFECT_DUST, trail_rate[trail]);
+        vehicle_dust(&behind, model, below_m);
+        if (air) behind.at_body[2] = below_m - 0.5 * model->height_m, behind.spread_body[1] = 0;
+        open_source(table, slot, 3, &behind, air ? EFFECT_CONTRAIL : EFFECT_DUST, vehicle_trail_rate[trail]);
     }
     if (munition && (trail || motor_burns(slot, t_s))) {
         EffectSource motor = source;
@@ -107,7 +101,7 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
         motor.at_body[2] = below_m - 0.5 * model->height_m;
         if (!trail && !(bits >> dis_appearance_power_plant_bit & 1) && !stands)
             motor.to_s = fmin(motor.to_s, slot->drives.motor.until_s + slot->paused_s);
-        open_source(table, slot, 3, &motor, EFFECT_MOTOR_SMOKE, trail ? trail_rate[trail] : 1);
+        open_source(table, slot, 3, &motor, EFFECT_MOTOR_SMOKE, trail ? vehicle_trail_rate[trail] : 1);
     }
 }
 
@@ -151,41 +145,6 @@ static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *m
     return 1;
 }
 
-/* Where a model's exhaust gas leaves, and in which direction, body axes: the middle of the outlet parts at rest, and
- * the axis along which they lie farthest out, but never downwards. Returns false where no part is an outlet. */
-static bool outlet_of(double at_body[3], double d_body[3], const Model *model, HeatRole role)
-{
-    double sum[3] = {0}, far = -1;
-    int    count = 0, axis = 0;
-    for (int p = 0; p < model->part_count; p++) {
-        const ModelPart *part = &model->part[p];
-        if (part->role != role) continue;
-        for (int c = 0; c < 3 * part->triangle_count; c++) {
-            double at[3], turned[3];
-            memcpy(at, model->vertex[model->triangle[part->first_triangle + c / 3][c % 3]], sizeof at);
-            for (int node = part->node; node >= 0; node = model->node[node].parent) {
-                m3_mul_v3(turned, model->node[node].r_parent_from_node, at);
-                v3_add(at, turned, model->node[node].p_parent);
-            }
-            v3_add(sum, sum, at);
-            count++;
-        }
-    }
-    if (count == 0) return false;
-    v3_scale(at_body, 1.0 / count, sum);
-    double sign = -1;
-    for (int k = 0; k < 3; k++) {
-        const double middle = 0.5 * (model->box_low[k] + model->box_high[k]);
-        const double half = fmax(0.5 * (model->box_high[k] - model->box_low[k]), 0.01);
-        const double off = (at_body[k] - middle) / half;
-        if (k == 2 && off > 0) continue;
-        if (fabs(off) > far) far = fabs(off), axis = k, sign = off > 0 ? 1 : -1;
-    }
-    v3_scale(d_body, 0, d_body);
-    d_body[axis] = sign;
-    return true;
-}
-
 /* Whether a model has rotors and a turbine: a rotorcraft, whose gas leaves the turbine. */
 static bool is_rotorcraft(uint32_t roles) { return roles >> HEAT_ROTOR & 1 && roles >> HEAT_TURBINE & 1; }
 
@@ -193,69 +152,23 @@ void entity_effects_outlet(EntityTable *table, int model)
 {
     ModelOutlet *outlet = &table->outlet[model];
     if (outlet->known) return;
-    const HeatRole     role = is_rotorcraft(table->model_roles[model]) ? HEAT_TURBINE : HEAT_EXHAUST;
-    const Model       *shape = catalog_model(table->catalog, model);
-    const bool         turbine = role == HEAT_TURBINE;
-    const EffectModel *law =
-        &effect_history_table(table->effects)->law[turbine ? EFFECT_TURBINE_EXHAUST : EFFECT_EXHAUST];
-    ExhaustJet *jet = &outlet->jet;
-    outlet->is_there = outlet_of(jet->at_body, jet->d_body, shape, role);
-    jet->radius_m = law->radius_start_m * (turbine ? 1 : size_of(shape));
-    jet->speed_mps = turbine ? 40 : 12; /* estimates */
-    jet->excess_k = law->temp_rise_k;
+    outlet->is_there = exhaust_outlet(&outlet->jet, catalog_model(table->catalog, model),
+                                      is_rotorcraft(table->model_roles[model]), effect_history_table(table->effects));
     outlet->known = true;
 }
 
-typedef struct Exhaust {
-    EffectKind         kind;
-    const EffectModel *law;
-    double             drive, scale; /* drive: the engine's share of full power */
-} Exhaust;
-
-/* Adds the exhaust, a jet that mixes with the air, as puffs at equal intervals of age; the first one is still growing.
- * Each left the outlet where it was at that time, and keeps the outlet's and the jet's speed for a moment; then wind
- * and buoyancy carry it (effects.c). All of it depends on t alone. */
-static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelOutlet *outlet, const Exhaust *exhaust,
-                          double t_s)
+static int exhaust_of(EffectPuff *out, const SnapshotEntity *e, const ModelOutlet *outlet, EffectKind kind,
+                      double drive, double scale, const EffectTable *table, double t_s)
 {
-    const EffectKind kind = exhaust->kind;
-    const double     drive = exhaust->drive, scale = exhaust->scale;
-    enum { puffs = 5 };
-    const double        jet_mps = outlet->jet.speed_mps;
-    static const double jet_decay_s = 0.12;
-    double              at_ecef[3], d_ecef[3];
-    if (!(drive > 0) || !outlet->is_there) return 0;
-    const uint64_t key = entity_key(e->id);
-    const double   interval_s = exhaust->law->life_s / (puffs + 0.5), begun = floor(t_s / interval_s);
-    const double   phase = t_s / interval_s - begun;
-    m3_mul_v3(at_ecef, e->r_ecef_from_body, outlet->jet.at_body);
-    m3_mul_v3(d_ecef, e->r_ecef_from_body, outlet->jet.d_body);
-    for (int k = 0; k < puffs; k++) {
-        EffectPuff *puff = &out[k];
-        *puff = (EffectPuff){.kind = kind,
-                             .owner = key + 1,
-                             .group = (uint32_t)(key * 31 + kind),
-                             .throw_s = jet_decay_s,
-                             .seed = (uint32_t)((int64_t)begun - k),
-                             .scale = scale,
-                             .age_s = (k + phase + 0.5) * interval_s};
-        puff->mass_kg = exhaust->law->mass_kg * scale * scale * drive * interval_s * (k == 0 ? phase : 1);
-        v3_add(puff->p_ecef, e->p_ecef, at_ecef);
-        v3_add_scaled(puff->p_ecef, puff->p_ecef, -puff->age_s, e->v_ecef_mps);
-        v3_scale(puff->up_ecef, 1 / v3_length(e->p_ecef), e->p_ecef);
-        /* a puff is as long as the way to the next puff, seen from the outlet, so that puffs join */
-        const double early = exp(-(puff->age_s - 0.5 * interval_s) / jet_decay_s);
-        const double jet_m = jet_mps * jet_decay_s * early * -expm1(-interval_s / jet_decay_s);
-        const double left_s = interval_s - jet_m / jet_mps; /* multiplied by the outlet's speed */
-        double       way[3];
-        for (int i = 0; i < 3; i++) {
-            puff->throw_mps[i] = jet_mps * d_ecef[i] + e->v_ecef_mps[i];
-            way[i] = jet_m * d_ecef[i] - left_s * e->v_ecef_mps[i];
-        }
-        puff->along_m = 0.6 * v3_length(way);
-        if (!v3_normalize(puff->axis_ecef, way)) memcpy(puff->axis_ecef, d_ecef, sizeof puff->axis_ecef);
-    }
-    return puffs;
+    const ExhaustSource source = {.kind = kind,
+                                  .jet = &outlet->jet,
+                                  .key = entity_key(e->id),
+                                  .drive = outlet->is_there ? drive : 0,
+                                  .scale = scale,
+                                  .p_ecef = e->p_ecef,
+                                  .r_ecef_from_body = e->r_ecef_from_body,
+                                  .v_ecef_mps = e->v_ecef_mps};
+    return exhaust_behind(out, &source, table, t_s);
 }
 
 static int fire_about(EffectPuff *out, const SnapshotEntity *e, const EffectTable *table)
@@ -296,14 +209,11 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
                             t_s);
     if (!(drive > 0)) return 0;
     if (air && is_rotorcraft(slot->roles))
-        return exhaust_behind(out, entity, outlet,
-                              &(Exhaust){EFFECT_TURBINE_EXHAUST, &effects->law[EFFECT_TURBINE_EXHAUST], drive, 1}, t_s);
+        return exhaust_of(out, entity, outlet, EFFECT_TURBINE_EXHAUST, drive, 1, effects, t_s);
     if (air && slot->roles >> HEAT_TURBINE & 1)
         return plume_behind(out, entity, model, &(Plume){EFFECT_JET_EXHAUST, &effects->law[EFFECT_JET_EXHAUST], 6, 1},
                             t_s);
-    if (!air)
-        return exhaust_behind(out, entity, outlet,
-                              &(Exhaust){EFFECT_EXHAUST, &effects->law[EFFECT_EXHAUST], drive, size_of(model)}, t_s);
+    if (!air) return exhaust_of(out, entity, outlet, EFFECT_EXHAUST, drive, vehicle_effect_scale(model), effects, t_s);
     return 0;
 }
 

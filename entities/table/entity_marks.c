@@ -1,11 +1,11 @@
 /* entities/table/entity_marks.c: which marks an entity leaves on the ground, by its type and motion. Whatever is
  * recorded follows from PDUs: nothing from a snapshot, a timeout or a tick. */
 #include "entities/table/entity_table_private.h"
+#include "entities/traces/vehicle_traces.h"
 
 static const double moving_mps = 0.3;  /* the limit of drives.c */
 static const double stood_s = 60;      /* shorter stands leave no mark */
 static const double near_ground_m = 3; /* the elevation of senders differs from ours by metres */
-static const double gravity_mps2 = 9.80665;
 static const double stood_least_s = 300, stood_most_s = 3 * 86400, again_s = 3600;
 
 /* ---- the entity ------------------------------------------------------------------------------- */
@@ -172,23 +172,11 @@ static bool is_tracked(const EntitySlot *slot)
     return c == 1 || c == 2 || c == 4 || c == 8 || c == 9;
 }
 
-/* Widths and friction heat. Rolling resistance of 5 % of the weight for tracks and 3 % for tyres on soil: middle of the
- * ranges in Wong, Theory of Ground Vehicles. Estimates: weight by the bounding box (a tank of 59 m3: 53 t; a lorry of
- * 55 m3: 19 t), width of a track or tyre as a share of the vehicle's, and half of the heat in the ground. Within a
- * factor of two. */
 static GroundTrack track_of(const EntitySlot *slot, const Model *model)
 {
-    const bool   tracked = is_tracked(slot);
-    const double resistance = tracked ? 0.05 : 0.03, t_m3 = tracked ? 0.9 : 0.35, share = tracked ? 0.16 : 0.1;
-    const double in_ground = 0.5;
-    const double width_m = share * model->width_m;
-    const double weight_n = 1000 * t_m3 * model->length_m * model->width_m * model->height_m * gravity_mps2;
-    const double heat_j_m2 = width_m > 0 ? in_ground * resistance * weight_n / (2 * width_m) : 0;
-    return (GroundTrack){.width_m = (float)width_m,
-                         .apart_m = (float)(model->width_m - width_m),
-                         .heat_j_m2 = (float)fmin(heat_j_m2, 1e6),
-                         .tracked = tracked,
-                         .owner = entity_key(slot->id) + 1};
+    GroundTrack track = vehicle_track(model, is_tracked(slot));
+    track.owner = entity_key(slot->id) + 1;
+    return track;
 }
 
 static double speed_of(const EntitySlot *slot)

@@ -2,7 +2,9 @@
  * channels. */
 #include "render/frame/shade_private.h"
 
+#include "entities/scenery/scenery_exhaust.h"
 #include "entities/scenery/scenery_smoke.h"
+#include "entities/scenery/scenery_traces.h"
 #include "render/light/optical.h"
 #include "render/light/thermal.h"
 
@@ -38,6 +40,21 @@ static void open_sky_of_scenery(ShadeScene *scene)
     scene->horizons = scene->world->horizons;
 }
 
+/* Smoke, dust and gas of scenery, behind the snapshot's own. */
+static Status add_scenery_puffs(Snapshot *snapshot, const World *world, const View *view, Arena *arena)
+{
+    const Scenery *scenery = scenery_tracer_of(world->scenery);
+    const double  *r = view->r_enu_from_cam;
+    double         half[2];
+    view_half_tangents(half, view);
+    const SceneryCone seen = {.p_enu = {view->p_enu[0], view->p_enu[1], view->p_enu[2]},
+                              .d_enu = {r[2], r[5], r[8]},
+                              .tangent = hypot(half[0], half[1])};
+    Status            status = scenery_smoke(snapshot, scenery, &world->frame, view->p_enu, arena);
+    if (status == STATUS_OK) status = scenery_dust(snapshot, scenery, &world->frame, &seen, arena);
+    return status == STATUS_OK ? scenery_exhaust(snapshot, scenery, &world->frame, &seen, arena) : status;
+}
+
 Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsigned channels, Pool *pool, Arena *arena)
 {
     const World    *world = scene->world;
@@ -56,10 +73,9 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
                              .ground_rho = world->materials.ground_rho,
                              .bands = channels,
                              .hidden = request->hidden_entity};
-    Snapshot         smoking = *snapshot; /* with what burns of scenery */
+    Snapshot         smoking = *snapshot; /* with what burns and drives of scenery */
     Status           status = STATUS_OK;
-    if (world->scenery)
-        status = scenery_smoke(&smoking, scenery_tracer_of(world->scenery), &world->frame, request->view.p_enu, arena);
+    if (world->scenery) status = add_scenery_puffs(&smoking, world, &request->view, arena);
     if (status == STATUS_OK) status = smoke_effects_scene(&scene->effects, &smoking, &seen, air, arena);
     if (status != STATUS_OK) return status;
     int *volume = arena_alloc(arena, (size_t)scene->effects.count + 1, sizeof *volume);

@@ -77,6 +77,10 @@ Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m,
 /* The heat of ground and scenery at a time, in the arena; times in order; *out NULL where the world is not warm. marks:
  * may be NULL. */
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);
+/* What entities (own; NULL: nothing) and scenery left on the ground, seen from near eye_enu, in the arena: for
+ * world_heat_at. Of scenery nothing where the world is not warm. */
+Status world_marks_at(GroundMarks *out, const World *world, const GroundMarks *own, const double eye_enu[3],
+                      double unix_s, Arena *arena);
 /* The patches of a snapshot's models. One thread at a time. */
 Status world_need_patches(const World *world, const Snapshot *snapshot);
 /* Air temperature at ground level then, K; NaN: the world is not warm. */

@@ -1,6 +1,8 @@
 /* render/frame/world_scenery.c: scenery of the world: what rays meet of it, and what warms it. */
 #include "render/frame/world.h"
 
+#include "entities/scenery/scenery_traces.h"
+
 #include <stdlib.h>
 
 static void wind_there(double wind_enu_mps[3], double unix_s, const void *user)
@@ -58,6 +60,16 @@ Status world_scenery_temps(SceneryTemps **out, const World *world, double unix_s
 {
     *out = NULL;
     return world->scenery_heat ? scenery_temps_at(out, world->scenery_heat, unix_s, arena) : STATUS_OK;
+}
+
+Status world_marks_at(GroundMarks *out, const World *world, const GroundMarks *own, const double eye_enu[3],
+                      double unix_s, Arena *arena)
+{
+    *out = own ? *own : (GroundMarks){0};
+    if (!world->scenery || !world->drive) return STATUS_OK;
+    const GroundMarks before = *out;
+    return scenery_marks(out, &before, scenery_tracer_of(world->scenery), &world->frame, eye_enu,
+                         unix_s - world->drive->exercise_s, arena);
 }
 
 /* ---- what is seen of it ----------------------------------------------------------------------- */

@@ -76,12 +76,8 @@ typedef struct GroundKinds {
 /* path: etc/ground_heat.csv. Every kind must have its row; failures are logged with file, line, column and range. */
 Status ground_kinds_open(GroundKinds *out, const char *path, const Materials *materials);
 /* Soil and what grows on it, that tracks and wheels tear open. */
-static inline bool ground_kind_loosens(int kind)
-{
-    return (kind >= SURFACE_GRASS && kind <= SURFACE_TRACK) || kind == SURFACE_SCRUB || kind == SURFACE_WETLAND ||
-           kind == ground_forest_floor;
-}
-int ground_kind_find(const char *name); /* -1: none */
+static inline bool ground_kind_loosens(int kind) { return surface_loosens(kind) || kind == ground_forest_floor; }
+int                ground_kind_find(const char *name); /* -1: none */
 
 /* ---- soil ------------------------------------------------------------------------------------ */
 

@@ -140,13 +140,15 @@ Status frame_light(FrameLight *out, const World *world, const Config *config, co
 {
     const Weather weather = frame_weather_at(config, world, eye->unix_s);
     HeatScene    *heat = NULL;
+    GroundMarks   marks;
     Geodetic      place;
     double        p_ecef[3], r_ecef_from_host[9], d_ecef[3];
     Status        status = geodetic_from_ecef(&place, eye->p_ecef);
     if (status == STATUS_OK) status = ecef_from_geodetic(p_ecef, r_ecef_from_host, &place);
     if (status == STATUS_OK)
         status = sun_at(&out->sun, eye->unix_s, &place, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
-    if (status == STATUS_OK) status = world_heat_at(&heat, world, eye->marks, eye->unix_s, arena);
+    if (status == STATUS_OK) status = world_marks_at(&marks, world, eye->marks, eye->view->p_enu, eye->unix_s, arena);
+    if (status == STATUS_OK) status = world_heat_at(&heat, world, &marks, eye->unix_s, arena);
     if (status != STATUS_OK) return status;
     Sun local = out->sun;
     m3_mul_v3(d_ecef, r_ecef_from_host, out->sun.d_enu);

@@ -38,7 +38,7 @@ typedef struct FrameEye {
     double             p_ecef[3];
     const View        *view;
     unsigned           bands;
-    const GroundMarks *marks; /* NULL: none */
+    const GroundMarks *marks; /* of entities; NULL: none */
 } FrameEye;
 
 /* The light of a frame. */

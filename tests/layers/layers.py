@@ -25,7 +25,7 @@ MAY = {
     'entities': ('dis/*', 'terrain/*'),
     # a Snapshot and the terrain, never a PDU or the table; pdu.h for its ids alone
     'render': ('terrain/*', 'entities/models/model.h', 'entities/models/patches.h', 'entities/traces/effect_puffs.h',
-               'entities/import/model_import.h', 'entities/catalog/catalog.h', 'entities/scenery/scenery.h', 'entities/scenery/scenery_lamps.h', 'entities/scenery/scenery_smoke.h',
+               'entities/import/model_import.h', 'entities/catalog/catalog.h', 'entities/scenery/scenery.h', 'entities/scenery/scenery_lamps.h', 'entities/scenery/scenery_smoke.h', 'entities/scenery/scenery_exhaust.h', 'entities/scenery/scenery_traces.h',
                'entities/table/snapshot.h', 'dis/pdu/pdu.h'),
     'sensor': ('dis/*', 'terrain/*', 'entities/*', 'render/*'),
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),

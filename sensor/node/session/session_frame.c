@@ -100,8 +100,11 @@ static Status look_without(Frame *f, const Session *s, const FrameLight *light, 
     const PairsTaken take = {.all = all, .aim = s->plan.aim, .host = host};
     Status           status = pairs_take_away(f, &take);
     HeatScene       *heat = NULL;
+    GroundMarks      marks;
+    const World     *world = s->shared->world;
     if (status == STATUS_OK) /* the ground as it is where the target never stood */
-        status = world_heat_at(&heat, s->shared->world, &f->without->snapshot.marks, f->unix_s, f->arena);
+        status = world_marks_at(&marks, world, &f->without->snapshot.marks, f->request.view.p_enu, f->unix_s, f->arena);
+    if (status == STATUS_OK) status = world_heat_at(&heat, world, &marks, f->unix_s, f->arena);
     if (status != STATUS_OK) return status;
     FrameLight without = *light;
     without.air.heat = heat;
