@@ -17,10 +17,12 @@ struct NodeMesh {
     const Model *model;
     int          node;
     uint8_t      damage_hidden; /* of all its parts: ModelPart */
-    RTCScene     scene;         /* of its triangles' boxes, with margin, about `centre` */
+    RTCScene     scene;         /* of its patches' boxes, with margin, about `centre` */
     int          triangle_count;
     uint32_t    *triangle; /* of the model, ascending */
-    Facet       *facet;    /* in the same order, which is Embree's too */
+    Facet       *facet;    /* in the same order */
+    int          patch_count;
+    uint32_t    *patch;    /* [patch_count + 1]: first facet of each; facets of a patch share one of Embree's boxes */
     int          corner_count;
     double (*corner)[3];   /* every vertex of its triangles, once; the outermost first */
     double (*block)[2][3]; /* of every parts_block_corners of them: low and high, with margin */

@@ -3,6 +3,7 @@
 #ifndef RENDER_TRACE_SCENERY_SCENERY_TRACER_PRIVATE_H
 #define RENDER_TRACE_SCENERY_SCENERY_TRACER_PRIVATE_H
 
+#include "render/trace/scenery/scenery_heights_private.h"
 #include "render/trace/scenery/scenery_tracer.h"
 #include "render/trace/visibility/crowd.h"
 
@@ -16,6 +17,7 @@ struct SceneryTracer {
     int            moved;            /* of Scenery.mover, and behind them objects whose damage changes: */
     int           *harmed;           /* [moved - movers]: objects */
     BroadPhase    *tree;             /* of those that stand */
+    SceneryHeights *heights;         /* likewise; NULL: not known */
     int            drawable, moving; /* objects that stand, and that drive, and have something to meet */
     int           *row_first;        /* [models] of row */
     int           *row;              /* [parts][model_damage_states]: rows of materials */
