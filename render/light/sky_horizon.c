@@ -91,8 +91,9 @@ static inline bool horizon_between(Horizon *out, const Four *four, bool close)
         ground_m = fmaf(four->weight[k], cell->ground_m, ground_m), of += four->weight[k];
         some = some || !is_open(cell);
     }
-    out->high = f32x8_set(horizon_height_step_m * (1 - 1e-6)) * high / f32x8_max(sine2, f32x8_set(1e-6)); /* no more
-                                                                                        * than theirs, if rounded */
+    out->high = f32x8_set(horizon_height_step_m * (1 - 1e-6)) * high /
+                f32x8_max(sine2, f32x8_set(1e-6)); /* no more
+                                                    * than theirs, if rounded */
     out->sine2 = f32x8_min(sine2 * f32x8_set(1 / (255.0 * 255)), f32x8_set(1 - 1e-6));
     out->close_high = f32x8_set(horizon_height_step_m) * close_high;
     out->ground_m = ground_m, out->of = of;

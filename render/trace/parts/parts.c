@@ -21,9 +21,6 @@ struct Tracer {
 
 /* ---- building ----------------------------------------------------------------------------- */
 
-enum { patch_most = 2 };                          /* facets of a patch */
-static const double patch_much_the_same = 0.75; /* surface of its box at most, over the sum of theirs */
-
 static void latch_error(void *user, enum RTCError code, const char *text)
 {
     Tracer *tracer = user;
@@ -78,24 +75,6 @@ enum { hidden_groups = 1 << model_damage_states };
 static int hidden_group_of(uint8_t hidden) { return hidden & (hidden_groups - 1); }
 static int hidden_group(const ModelPart *part) { return hidden_group_of(part->damage_hidden); }
 
-static bool has_area(const Facet *f) { return f->height_m[0] > 0 && f->height_m[1] > 0 && f->height_m[2] > 0; }
-
-/* Widens a box by a facet; one without area is never hit. */
-static void include_facet(double low[3], double high[3], const Facet *f)
-{
-    for (int k = 0; k < 3 && has_area(f); k++)
-        for (int x = 0; x < 3; x++) {
-            low[x] = f->corner[k][x] < low[x] ? f->corner[k][x] : low[x];
-            high[x] = f->corner[k][x] > high[x] ? f->corner[k][x] : high[x];
-        }
-}
-
-static void bound_patch(double low[3], double high[3], const NodeMesh *mesh, uint32_t patch)
-{
-    for (int x = 0; x < 3; x++) low[x] = INFINITY, high[x] = -INFINITY;
-    for (uint32_t f = mesh->patch[patch]; f < mesh->patch[patch + 1]; f++) include_facet(low, high, &mesh->facet[f]);
-}
-
 /* Embree only finds candidates, by boxes with conservative tests and a hundred times the margin that the floats of a
  * node of R metres may need. Candidates are tested exactly in double. */
 static void nominate_box(const struct RTCBoundsFunctionArguments *a)
@@ -103,7 +82,7 @@ static void nominate_box(const struct RTCBoundsFunctionArguments *a)
     const NodeMesh *mesh = a->geometryUserPtr;
     const double    room_m = 1e-4 + 1e-5 * mesh->radius_m;
     double          low[3], high[3];
-    bound_patch(low, high, mesh, a->primID);
+    parts_bound_patch(low, high, mesh, a->primID);
     if (!(low[0] <= high[0])) {
         *a->bounds_o = (struct RTCBounds){.lower_x = NAN, .upper_x = NAN};
         return;
@@ -114,43 +93,6 @@ static void nominate_box(const struct RTCBoundsFunctionArguments *a)
                                       .upper_x = (float)(high[0] - mesh->centre[0] + room_m),
                                       .upper_y = (float)(high[1] - mesh->centre[1] + room_m),
                                       .upper_z = (float)(high[2] - mesh->centre[2] + room_m)};
-}
-
-/* Half the surface of a box; 0: an empty one. */
-static double half_surface_m2(const double low[3], const double high[3])
-{
-    const double x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
-    return x >= 0 ? x * y + y * z + z * x : 0;
-}
-
-/* Neighbours in the list whose boxes are much the same, as are those of a quad's two triangles, make a patch: half as
- * many boxes to pass through, and facets that are tested together lie together. */
-static Status list_patches(NodeMesh *mesh)
-{
-    double low[3] = {0}, high[3] = {0}, patch_m2 = 0; /* of the patch that is being made */
-    mesh->patch = calloc((size_t)mesh->triangle_count + 1, sizeof *mesh->patch);
-    if (!mesh->patch) return STATUS_NO_MEMORY;
-    for (int t = 0; t < mesh->triangle_count; t++) {
-        double own_low[3] = {INFINITY, INFINITY, INFINITY}, own_high[3] = {-INFINITY, -INFINITY, -INFINITY};
-        include_facet(own_low, own_high, &mesh->facet[t]);
-        const double own_m2 = half_surface_m2(own_low, own_high);
-        const int    held = mesh->patch_count ? t - (int)mesh->patch[mesh->patch_count - 1] : patch_most;
-        if (held < patch_most) {
-            double both[2][3];
-            for (int x = 0; x < 3; x++) both[0][x] = fmin(low[x], own_low[x]), both[1][x] = fmax(high[x], own_high[x]);
-            const double both_m2 = half_surface_m2(both[0], both[1]);
-            if (both_m2 <= patch_much_the_same * (patch_m2 + own_m2)) {
-                memcpy(low, both[0], sizeof low), memcpy(high, both[1], sizeof high);
-                patch_m2 = both_m2;
-                continue;
-            }
-        }
-        mesh->patch[mesh->patch_count++] = (uint32_t)t;
-        memcpy(low, own_low, sizeof low), memcpy(high, own_high, sizeof high);
-        patch_m2 = own_m2;
-    }
-    mesh->patch[mesh->patch_count] = (uint32_t)mesh->triangle_count;
-    return STATUS_OK;
 }
 
 static void measure_facet(Facet *f, const Model *model, uint32_t triangle)
@@ -251,7 +193,7 @@ static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *mesh
         if (part->node == node && hidden_group(part) == hidden_group_of(hidden)) mesh->triangle[at++] = (uint32_t)t;
     }
     for (int t = 0; t < triangle_count; t++) measure_facet(&mesh->facet[t], model, mesh->triangle[t]);
-    if (list_patches(mesh) != STATUS_OK || list_corners(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
+    if (parts_list_patches(mesh) != STATUS_OK || list_corners(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
     if (tracer->thin && parts_list_thin(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
     bound_mesh(mesh);
     return commit_mesh(mesh, tracer);
@@ -415,13 +357,6 @@ int parts_largest_node(const PosedEntity *entity)
     for (int k = 1; k < entity->node_count; k++)
         if (entity->node[k].mesh->radius_m > entity->node[largest].mesh->radius_m) largest = k;
     return largest;
-}
-
-bool parts_node_patch(double box[2][3], const PosedNode *node, int k)
-{
-    if (k >= node->mesh->patch_count) return false;
-    bound_patch(box[0], box[1], node->mesh, (uint32_t)k);
-    return true;
 }
 
 const double (*parts_node_triangle(const PosedNode *node, int k))[3]

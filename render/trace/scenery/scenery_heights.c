@@ -197,9 +197,8 @@ int scenery_heights_below(int *list, const SceneryHeights *h, const double *cons
         return count;
     }
     /* straight up, the first cell is all that it goes over; steps as long as a cell whatever they rise */
-    const Way way = wide > 1e-9 * d_enu[2]
-                        ? (Way){d_enu[0] / wide, d_enu[1] / wide, h->cell_m * d_enu[2] / wide}
-                        : (Way){0, 0, 1e9};
+    const Way way = wide > 1e-9 * d_enu[2] ? (Way){d_enu[0] / wide, d_enu[1] / wide, h->cell_m * d_enu[2] / wide}
+                                           : (Way){0, 0, 1e9};
     for (int k = 0; k < count; k++) {
         const double o[3] = {o_enu[0][k], o_enu[1][k], o_enu[2][k]};
         list[left] = k;

@@ -147,8 +147,7 @@ static void list_objects(List *out, const SceneryFrame *f, const BroadPhase *tre
     int object[most_listed];
     int count = broad_phase_some_in_planes(object, most_listed, tree, lift, plane, in->count);
     if (count >= 0 && other) {
-        const int more =
-            broad_phase_some_in_planes(object + count, most_listed - count, other, lift, plane, in->count);
+        const int more = broad_phase_some_in_planes(object + count, most_listed - count, other, lift, plane, in->count);
         count = more < 0 ? -1 : count + more;
     }
     out->count = count;
@@ -309,7 +308,8 @@ static void scenery_first(double *range_m, void *found, const TraceBlock *block,
     memcpy(limit_m, block->limit_m, (size_t)b.count * sizeof *limit_m);
     memset(of->object, 0, (size_t)b.count * sizeof *of->object);
     const bool by_tree = skips(f->skips_off, SKIP_SCENERY);
-    if (by_tree && pyramid_of(&planes, axis, &b, limit_m)) list_objects(&list, f, f->of->tree, f->tree, &planes, axis, b.bent);
+    if (by_tree && pyramid_of(&planes, axis, &b, limit_m))
+        list_objects(&list, f, f->of->tree, f->tree, &planes, axis, b.bent);
     if (list.count != 0) order_rays(order, b.count, b.columns);
     if (list.count > 0 || !by_tree)
         asked += meet_by_runs(limit_m, of, f, by_tree ? &list : NULL, &b, order, block->counters);
@@ -431,8 +431,8 @@ static uint64_t shade_by_tree(uint8_t *dark, const SceneryFrame *f, const BroadP
         prism_of(&planes, b, way);
         list_objects(&list, f, tree, NULL, &planes, way, false);
         if (list.count == 0) return 0;
-        asked = list.count > 0 ? shade_by_runs(met, f, &list, b, way, counters)
-                               : shade_by_crowd(met, f, tree, b, counters);
+        asked =
+            list.count > 0 ? shade_by_runs(met, f, &list, b, way, counters) : shade_by_crowd(met, f, tree, b, counters);
     }
     for (int k = 0; k < count; k++) dark[ray ? ray[k] : k] |= met[k];
     return asked;
@@ -446,7 +446,7 @@ static void scenery_any(const TraceShadow *s, const void *self)
     int                 ray[hits_capacity], below[hits_capacity], left = 0;
     uint8_t             dark[hits_capacity];
     const double *const o[3] = {start[0], start[1], start[2]}, *const d[3] = {way[0], way[1], way[2]};
-    uint64_t            asked = 0;
+    uint64_t asked = 0;
     for (int i = 0; i < s->count; i++) {
         if (s->dark[i] && skips(f->skips_off, SKIP_SUN_STOPPED)) continue;
         for (int c = 0; c < 3; c++) start[c][left] = s->o_enu[c][i], way[c][left] = s->way_enu[c];
