@@ -8,49 +8,16 @@ static const double before_cells = 1.2;
 static const HorizonCell *cell_at(const SkyHorizons *h, int i, int j)
 {
     if (i < 0 || j < 0 || i >= h->tiles_x * horizon_tile_side || j >= h->tiles_y * horizon_tile_side) return NULL;
-    const int tile = h->tile_of[j / horizon_tile_side * h->tiles_x + i / horizon_tile_side];
-    return tile < 0 ? NULL
-                    : &h->cell[(size_t)tile * horizon_tile_cells +
-                               (size_t)(j % horizon_tile_side * horizon_tile_side + i % horizon_tile_side)];
+    const unsigned x = (unsigned)i, y = (unsigned)j, side = horizon_tile_side;
+    const int      tile = h->tile_of[y / side * (unsigned)h->tiles_x + x / side];
+    return tile < 0 ? NULL : &h->cell[(size_t)tile * horizon_tile_cells + y % side * side + x % side];
 }
 
-static float sum8(F32x8 x)
+/* Sums of four vectors. */
+static inline __m128 sums_of_four(F32x8 a, F32x8 b, F32x8 c, F32x8 d)
 {
-    float each[8], sum = 0;
-    f32x8_store(each, x);
-    for (int k = 0; k < 8; k++) sum += each[k];
-    return sum;
-}
-
-/* sum8 of eight vectors side by side, to the same bits: lane after lane. */
-static F32x8 sums8(const F32x8 x[8])
-{
-    F32x8 pair[8], four[8], sum;
-    for (int k = 0; k < 4; k++) {
-        pair[2 * k] = _mm256_unpacklo_ps(x[2 * k], x[2 * k + 1]);
-        pair[2 * k + 1] = _mm256_unpackhi_ps(x[2 * k], x[2 * k + 1]);
-    }
-    for (int k = 0; k < 8; k += 4)
-        for (int i = 0; i < 2; i++) {
-            four[k + 2 * i] = _mm256_shuffle_ps(pair[k + i], pair[k + i + 2], 0x44);
-            four[k + 2 * i + 1] = _mm256_shuffle_ps(pair[k + i], pair[k + i + 2], 0xee);
-        }
-    sum = _mm256_permute2f128_ps(four[0], four[4], 0x20);
-    for (int k = 1; k < 4; k++) sum = sum + _mm256_permute2f128_ps(four[k], four[k + 4], 0x20);
-    for (int k = 0; k < 4; k++) sum = sum + _mm256_permute2f128_ps(four[k], four[k + 4], 0x31);
-    return sum;
-}
-
-/* Light of a sky that is as bright everywhere, on a plane, of the part of a sector above a horizon of this tangent: the
- * integrals over elevation h .. pi/2 of cos^2 and of sin cos. */
-static F32x8 above(F32x8 tangent, F32x8 aside, F32x8 up)
-{
-    const F32x8 one = f32x8_set(1), low = f32x8_less(tangent, one), per = one / f32x8_max(tangent, f32x8_set(1e-6));
-    const F32x8 t = f32x8_select(low, tangent, per);
-    const F32x8 arc = t * (f32x8_set(0.7853982) + f32x8_set(0.273) * (one - t)); /* arc tangent, within 0.004 */
-    const F32x8 left = f32x8_select(low, f32x8_set(0.5 * pi_rad) - arc, arc),
-                cosine2 = one / f32x8_fma(tangent, tangent, one);
-    return f32x8_max(aside * (left - tangent * cosine2) + up * cosine2, f32x8_set(0));
+    const F32x8 halves = _mm256_hadd_ps(_mm256_hadd_ps(a, b), _mm256_hadd_ps(c, d));
+    return _mm_add_ps(_mm256_castps256_ps128(halves), _mm256_extractf128_ps(halves, 1));
 }
 
 static float ground_under(const SkyHorizons *h, double x_m, double y_m, float z_m)
@@ -70,14 +37,8 @@ typedef struct Seen {
 static const float sine[8] = {0, 0.70710678f, 1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f};
 static const float cosine[8] = {1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f, 0, 0.70710678f};
 
-typedef struct Facet {
-    F32x8 aside, behind, up, all; /* of sectors: normal along them and against; open light */
-    F32x8 sunny, shaded; /* of the walls there that face us: cosine of the sun, share of their ground that is shaded */
-    float open;
-} Facet;
-
 /* Whether nothing about a cell hides any sky. */
-static bool is_open(const HorizonCell *cell)
+static inline bool is_open(const HorizonCell *cell)
 {
     uint64_t slopes;
     _Static_assert(sizeof slopes == sizeof cell->slope, "eight octets");
@@ -85,89 +46,121 @@ static bool is_open(const HorizonCell *cell)
     return slopes == 0;
 }
 
-/* What one cell leaves and hides, for a place at this height. before_m: the cell is that far before the place, along
- * the normal: what makes its horizon is as much farther from the place. own: what is behind it, else it stays. */
-static void cell_seen(F32x8 *left, F32x8 *lit, F32x8 *shaded, F32x8 *own, const HorizonCell *cell, float z_m,
-                      const Facet *f, double before_m)
-{
-    const F32x8 code = f32x8_of_ints(i32x8_of_bytes(cell->slope)) * f32x8_set(1.0 / 255);
-    const F32x8 high = f32x8_of_ints(i32x8_of_bytes(cell->height)) * f32x8_set(horizon_height_step_m);
-    const F32x8 over = _mm256_set1_ps(z_m - cell->ground_m > 0 ? z_m - cell->ground_m : 0);
-    const F32x8 near = code / f32x8_sqrt(f32x8_max(f32x8_set(1) - code * code, f32x8_set(1e-6)));
-    const F32x8 more = f32x8_fma(near * f32x8_set(before_m), f32x8_max(f->aside, f32x8_set(0)) / high, f32x8_set(1));
-    const F32x8 tangent = near / more * f32x8_clamp(f32x8_set(1) - over / high, 0, 1);
-    *left = f32x8_min(above(tangent, f->aside, f->up), f->all);
-    *lit = (f->all - *left) * f->sunny;
-    *shaded = (f->all - *left) * f->shaded;
-    *own = f32x8_and(high * f->behind, f32x8_greater(code, f32x8_set(0.24)));
-}
+/* The four cells about a place, and its share of each. */
+typedef struct Four {
+    const HorizonCell *cell[4];
+    float              weight[4];
+} Four;
 
-/* Adds four cells, of these weights. own: what is behind the place is asked for. */
-static void add_cells(Seen *to, const HorizonCell *const cell[4], const float weight[4], float z_m, const Facet *f,
-                      double before_m, bool own)
-{
-    F32x8 first[8], second[8]; /* what is left and lit, what is shaded and behind */
-    float sum[8], more[8];
-    bool  some = false;
-    for (int k = 0; k < 4; k++) {
-        first[k] = f->all, first[4 + k] = second[k] = second[4 + k] = f32x8_set(0); /* where nothing hides any sky */
-        if (!cell[k] || !(f->open > 1e-4f) || is_open(cell[k])) continue;
-        cell_seen(&first[k], &first[4 + k], &second[k], &second[4 + k], cell[k], z_m, f, before_m);
-        some = true;
-    }
-    if (some) f32x8_store(sum, sums8(first)), f32x8_store(more, sums8(second));
-    for (int k = 0; k < 4; k++) {
-        if (!cell[k] || !(f->open > 1e-4f)) {
-            to->share += weight[k];
-            continue;
-        }
-        to->share += weight[k] * (some ? sum[k] : f->open) / f->open;
-        if (!some) continue;
-        to->lit += weight[k] * sum[4 + k] / f->open;
-        to->shaded += weight[k] * more[k] / f->open;
-        if (own) to->own_high_m += weight[k] * more[4 + k];
-    }
-}
-
-/* A place somewhat before its surface, so that its cell is not that of what it is on. light: NULL: the sun is not asked
- * for. own: what is behind the place is. */
-static Seen seen_at(const SkyHorizons *h, double x_m, double y_m, float z_m, const float n[3],
-                    const SkyHorizonLight *light, bool own)
+/* A place somewhat before its surface, so that its cell is not that of what it is on; false: away from buildings. */
+static inline bool find_cells(Four *out, const SkyHorizons *h, double x_m, double y_m, const float n[3])
 {
     const double x = (x_m - h->x0_m) / h->cell_m + before_cells * (double)n[0];
     const double y = (y_m - h->y0_m) / h->cell_m + before_cells * (double)n[1];
-    const Seen   all = {.share = 1};
-    Seen         seen = {0};
-    Facet        f;
-    if (!(x >= 0 && y >= 0 && x < h->tiles_x * horizon_tile_side && y < h->tiles_y * horizon_tile_side)) return all;
-    const int          i = (int)x, j = (int)y;
-    const HorizonCell *cell[4] = {cell_at(h, i, j), cell_at(h, i + 1, j), cell_at(h, i, j + 1),
-                                  cell_at(h, i + 1, j + 1)};
-    if (!cell[0] && !cell[1] && !cell[2] && !cell[3]) return all;
+    if (!(x >= 0 && y >= 0 && x < h->tiles_x * horizon_tile_side && y < h->tiles_y * horizon_tile_side)) return false;
+    const int   i = (int)x, j = (int)y;
+    const float u = (float)(x - i), v = (float)(y - j);
+    out->cell[0] = cell_at(h, i, j), out->cell[1] = cell_at(h, i + 1, j);
+    out->cell[2] = cell_at(h, i, j + 1), out->cell[3] = cell_at(h, i + 1, j + 1);
+    out->weight[0] = (1 - u) * (1 - v), out->weight[1] = u * (1 - v);
+    out->weight[2] = (1 - u) * v, out->weight[3] = u * v;
+    return out->cell[0] || out->cell[1] || out->cell[2] || out->cell[3];
+}
+
+/* The horizon of a place, of sectors. */
+typedef struct Horizon {
+    F32x8 sine2, high;  /* squared sine of its elevation; what makes it, above the ground, by what it hides, m */
+    F32x8 close_high;   /* the same of what stands close, without weights, m */
+    float ground_m, of; /* sums of the cells' grounds and of their shares */
+} Horizon;
+
+/* Between the cells sin^2 is linear, as is the light that level ground loses. False: nothing hides any sky. */
+static inline bool horizon_between(Horizon *out, const Four *four, bool close)
+{
+    F32x8 sine2 = f32x8_set(0), high = sine2, close_high = sine2;
+    float ground_m = 0, of = 0;
+    bool  some = false;
+    for (int k = 0; k < 4; k++) {
+        const HorizonCell *cell = four->cell[k];
+        if (!cell) continue;
+        const F32x8 weight = _mm256_set1_ps(four->weight[k]);
+        const F32x8 s = f32x8_of_ints(i32x8_of_bytes(cell->slope)), up = f32x8_of_ints(i32x8_of_bytes(cell->height));
+        const F32x8 share = weight * (s * s);
+        sine2 = sine2 + share, high = f32x8_fma(share, up, high);
+        if (close) close_high = close_high + f32x8_and(weight * up, f32x8_greater(s, f32x8_set(0.24 * 255)));
+        ground_m = fmaf(four->weight[k], cell->ground_m, ground_m), of += four->weight[k];
+        some = some || !is_open(cell);
+    }
+    out->high = f32x8_set(horizon_height_step_m * (1 - 1e-6)) * high /
+                f32x8_max(sine2, f32x8_set(1e-6)); /* no more
+                                                    * than theirs, if rounded */
+    out->sine2 = f32x8_min(sine2 * f32x8_set(1 / (255.0 * 255)), f32x8_set(1 - 1e-6));
+    out->close_high = f32x8_set(horizon_height_step_m) * close_high;
+    out->ground_m = ground_m, out->of = of;
+    return some;
+}
+
+/* The normal along sectors and up, how far the cells are before the place along them, m, and light of an open sky. */
+typedef struct Facet {
+    F32x8 aside, before_m, up, all;
+} Facet;
+
+/* Light that the horizon hides of each sector, of a sky that is as bright everywhere, for a place this high above the
+ * ground. Cells are before the place: what makes the horizon is as much farther from it.
+ *
+ * The tangent of the horizon, s / c / (1 + s / c before / high) (1 - over / high) with sine and cosine s and c, is
+ * rise / run with nothing divided yet; the light above it is the integrals over elevation h .. pi/2 of cos^2 and of
+ * sin cos. */
+static inline F32x8 hidden_by(const Horizon *h, float over_m, const Facet *f)
+{
+    const F32x8 one = f32x8_set(1), none = f32x8_set(0), s = f32x8_sqrt(h->sine2), c = f32x8_sqrt(one - h->sine2);
+    const F32x8 rise = s * f32x8_max(h->high - _mm256_set1_ps(over_m > 0 ? over_m : 0), none);
+    const F32x8 run = f32x8_max(f32x8_fma(s, f->before_m, c * h->high), f32x8_set(1e-6));
+    const F32x8 steep = f32x8_less(run, rise), t = f32x8_min(rise, run) / f32x8_max(rise, run);
+    const F32x8 arc = t * (f32x8_set(0.7853982) + f32x8_set(0.273) * (one - t)); /* arc tangent, within 0.004 */
+    const F32x8 angle = f32x8_select(steep, arc, f32x8_set(0.5 * pi_rad) - arc); /* of the sky above */
+    const F32x8 per = rise / f32x8_fma(rise, rise, run * run);
+    const F32x8 above = f32x8_fma(f->aside, angle - run * per, f->up * (one - rise * per));
+    return f32x8_max(f->all - f32x8_max(above, none), none);
+}
+
+/* light: NULL: the sun is not asked for. own: what is behind the place is. */
+static inline Seen seen_from(const Four *four, const SkyHorizons *h, float z_m, const float n[3],
+                             const SkyHorizonLight *light, bool own)
+{
     const F32x8 east = f32x8_load(sine), north = f32x8_load(cosine), none = f32x8_set(0);
+    F32x8       sunny = none, shaded = none, behind = none;
+    float       sum[4], more[4];
+    Seen        seen = {.share = 1};
+    Facet       f;
+    Horizon     horizon;
+    if (!horizon_between(&horizon, four, own)) return seen;
     f.aside = f32x8_fma(_mm256_set1_ps(n[0]), east, _mm256_set1_ps(n[1]) * north);
+    f.before_m = f32x8_max(f.aside, none) * f32x8_set(before_cells * h->cell_m);
     f.up = _mm256_set1_ps(n[2]);
-    f.behind = f32x8_max(none - f.aside, none);
-    const float behind = sum8(f.behind);
-    f.behind = f.behind * _mm256_set1_ps(behind > 0.1f ? 1 / behind : 0);
-    f.sunny = f.shaded = none;
+    f.all = f32x8_max(f32x8_fma(f.aside, f32x8_set(0.5 * pi_rad), f.up), none);
+    const F32x8 hidden = hidden_by(&horizon, z_m - horizon.ground_m / horizon.of, &f);
     if (light) {
         const F32x8 sun_east = _mm256_set1_ps(light->sun_enu[0]), sun_north = _mm256_set1_ps(light->sun_enu[1]);
-        f.sunny = f32x8_max(none - f32x8_fma(sun_east, east, sun_north * north), none);
-        f.shaded = f32x8_load(light->shaded);
+        sunny = hidden * f32x8_max(none - f32x8_fma(sun_east, east, sun_north * north), none);
+        shaded = hidden * f32x8_load(light->shaded);
     }
-    f.all = above(none, f.aside, f.up);
-    f.open = sum8(f.all);
-    const float u = (float)(x - i), v = (float)(y - j),
-                weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-    add_cells(&seen, cell, weight, z_m, &f, before_cells * h->cell_m, own);
+    if (own) behind = f32x8_max(none - f.aside, none);
+    _mm_storeu_ps(sum, sums_of_four(hidden, sunny, shaded, f.all));
+    if (sum[3] > 1e-4f) seen.share = 1 - sum[0] / sum[3], seen.lit = sum[1] / sum[3], seen.shaded = sum[2] / sum[3];
+    if (own) {
+        _mm_storeu_ps(more, sums_of_four(behind, behind * horizon.close_high, none, none));
+        if (more[0] > 0.1f && sum[3] > 1e-4f) seen.own_high_m = more[1] / more[0];
+    }
     return seen;
 }
 
 double sky_horizon_share(const SkyHorizons *h, const double p_enu[3], const double n_enu[3])
 {
     const float n[3] = {(float)n_enu[0], (float)n_enu[1], (float)n_enu[2]};
-    return (double)seen_at(h, p_enu[0], p_enu[1], (float)p_enu[2], n, NULL, false).share;
+    Four        four;
+    if (!find_cells(&four, h, p_enu[0], p_enu[1], n)) return 1;
+    return (double)seen_from(&four, h, (float)p_enu[2], n, NULL, false).share;
 }
 
 void sky_horizon_light(SkyHorizonLight *out, const SkyHorizons *h, const Air *air,
@@ -213,7 +206,9 @@ void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, cons
         if (hits->kind[i] != hit_ground && hits->kind[i] != hit_scenery) continue;
         const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
         const float z_m = (float)hits->p_enu[2][i];
-        const Seen seen = seen_at(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m, n, light, hits->kind[i] == hit_scenery);
+        Four        four;
+        if (!find_cells(&four, h, hits->p_enu[0][i], hits->p_enu[1][i], n)) continue;
+        const Seen seen = seen_from(&four, h, z_m, n, light, hits->kind[i] == hit_scenery);
         float      of[8], shade = 0;
         if (hits->kind[i] == hit_scenery && seen.own_high_m > 0)
             shade = own_shade(light, &seen, n, z_m - ground_under(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m));

@@ -463,6 +463,93 @@ static void skipping_changes_no_bit(void **state)
         }
 }
 
+/* Places in, above and far outside of what stands, by a sun of many heights (one below the horizon) and azimuths, with
+ * what drives and what is damaged in the course: shadows to the bit as when every object is asked, and rays that begin
+ * above everything that stands are not asked at all. */
+static void rays_to_the_sun_are_left_out_only_above_all(void **state)
+{
+    (void)state;
+    static const double height_deg[] = {-4, 0, 0.3, 2, 7, 20, 45, 80, 89.9999999, 90};
+    enum { heights = sizeof height_deg / sizeof *height_deg, azimuths = 5, places = 160, damages = 40 };
+    static SceneryHarm harm[damages];
+    const double       eye[3] = {0, 0, 50};
+    Scenery            scenery = stage.scenery;
+    SceneryTracer     *harmed = NULL, *before = stage.tracer;
+    int                shaded = 0;
+    uint8_t            dark[hits_capacity], dark_again[hits_capacity];
+    hand_draw = 77;
+    for (int k = 0; k < damages; k++) harm[k] = (SceneryHarm){.object = 50 * k + 3, .t_s = k % 2 ? 0 : 10, .damage = 3};
+    scenery.harms = damages, scenery.harm = harm;
+    assert_int_equal(scenery_tracer_create(&harmed, &scenery, "avx2", NULL), STATUS_OK);
+    stage.tracer = harmed;
+    for (int e = 0; e < heights; e++)
+        for (int a = 0; a < azimuths; a++) {
+            const double up = e == heights - 1 ? 1 : sin(height_deg[e] * rad_per_deg);
+            const double level = sqrt(1 - up * up), azimuth = 2 * pi_rad * hand_uniform(0, 1);
+            const double way[3] = {level * sin(azimuth), level * cos(azimuth), up};
+            arena_reset(stage.arena);
+            const Visibility *v = see(NULL, 4, 0, eye, 0), *w = see(NULL, 4, skips_all_off, eye, 0);
+            memset(&hits, 0, sizeof hits);
+            hits.count = places;
+            for (int i = 0; i < places; i++) {
+                const double wide = i % 4 == 3 ? 12 * wide_m : 1.2 * wide_m;
+                hits.kind[i] = hit_ground, hits.range_m[i] = 1;
+                for (int c = 0; c < 2; c++) hits.p_enu[c][i] = hand_uniform(-wide, wide);
+                hits.p_enu[2][i] = hand_uniform(-10, high_m + 12);
+                for (int c = 0; c < 3; c++) hits.n_geo[c][i] = hits.n_enu[c][i] = (float)way[c];
+            }
+            visibility_shadow(dark, v, &hits, way, &counters);
+            visibility_shadow(dark_again, w, &hits, way, &counters);
+            CHECK(memcmp(dark, dark_again, places) == 0);
+            for (int i = 0; i < places; i++) shaded += dark[i];
+            if (!(way[2] > 0)) continue;
+            for (int i = 0; i < places; i++) hits.p_enu[2][i] += 2 * high_m;
+            memset(&counters, 0, sizeof counters);
+            visibility_shadow(dark, v, &hits, way, &counters);
+            CHECK(counters.rays_sun_scenery == 0);
+        }
+    print_message("%d of %d in shade\n", shaded, heights * azimuths * places);
+    CHECK(shaded > 500 && shaded < heights * azimuths * places / 2);
+    stage.tracer = before;
+    scenery_tracer_destroy(harmed);
+}
+
+/* Cells about a house with a yard beside it: places in the yard, out of its shadow, ask nothing though the house's box
+ * covers them. */
+static void a_yard_asks_nothing(void **state)
+{
+    (void)state;
+    static Model   model;
+    SceneryObject  object = {.state = -1, .r_enu_from_body = {0, 1, 0, 1, 0, 0, 0, 0, -1}};
+    const Scenery  scenery = {.models = 1, .objects = 1, .model = &model, .object = &object};
+    const double   eye[3] = {0, 0, 50}, way[3] = {0.6, 0, 0.8};
+    SceneryTracer *tracer = NULL, *before = stage.tracer;
+    uint8_t        dark[hits_capacity];
+    hand_model(&model, 1, 16, 24);
+    hand_box_into(&model, 0, (const double[3]){-5, -40, -8}, (const double[3]){5, -30, 0}); /* in the west */
+    hand_box_into(&model, 0, (const double[3]){-5, 30, -8}, (const double[3]){5, 40, 0});   /* in the east */
+    assert_int_equal(scenery_tracer_create(&tracer, &scenery, "avx2", NULL), STATUS_OK);
+    stage.tracer = tracer;
+    arena_reset(stage.arena);
+    const Visibility *v = see(NULL, 0, 0, eye, 0);
+    memset(&hits, 0, sizeof hits);
+    memset(&counters, 0, sizeof counters);
+    hits.count = 40;
+    for (int i = 0; i < 40; i++) {
+        hits.kind[i] = hit_ground, hits.range_m[i] = 1, hits.n_geo[2][i] = hits.n_enu[2][i] = 1;
+        hits.p_enu[0][i] = -19.5 + i; /* the eastern house's shadow begins 6 m before it, at 24 */
+    }
+    visibility_shadow(dark, v, &hits, way, &counters);
+    for (int i = 0; i < 40; i++) CHECK(!dark[i]);
+    CHECK(counters.rays_sun_scenery == 0);
+    for (int i = 0; i < 40; i++) hits.p_enu[0][i] = 24.5 + 0.1 * i;
+    visibility_shadow(dark, v, &hits, way, &counters);
+    for (int i = 0; i < 40; i++) CHECK(dark[i] == 1);
+    stage.tracer = before;
+    scenery_tracer_destroy(tracer);
+    hand_free(&model);
+}
+
 /* A ray of a block is what it is alone, and in any order of its block. */
 static void a_block_is_the_sum_of_its_rays(void **state)
 {
@@ -559,6 +646,8 @@ int main(void)
         cmocka_unit_test(bent_rays_meet_what_is_raised),
         cmocka_unit_test(shadows_fall_where_some_triangle_is),
         cmocka_unit_test(skipping_changes_no_bit),
+        cmocka_unit_test(rays_to_the_sun_are_left_out_only_above_all),
+        cmocka_unit_test(a_yard_asks_nothing),
         cmocka_unit_test(a_block_is_the_sum_of_its_rays),
         cmocka_unit_test(of_equals_the_lowest_object_is_met),
         cmocka_unit_test(tops_are_what_rays_from_above_meet),

@@ -6,6 +6,7 @@
  * Under `valgrind --tool=callgrind --instr-atstart=no` the count of each frame is dumped under its name; set-up and
  * first frames are not counted. Standard output is CSV, a frame a line, with the frame's own counters; lines with # say
  * what the count depends on, --about prints these alone. */
+#include "tests/scenes/town.h"
 #include "tests/scenes/woods_stand.h"
 #include "sensor/quality/trial_private.h"
 #include "sensor/settings/config.h"
@@ -30,7 +31,7 @@ enum { width = 64, height = 48, trees = 3000 };
 static const double   east_m = 600, north_m = 2100;
 static const unsigned all_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR | 1u << BAND_RADAR;
 
-typedef enum Place { BARE, WOODS, FEW, VEHICLES, CROWD, SMOKE, places } Place;
+typedef enum Place { BARE, WOODS, FEW, VEHICLES, CROWD, SMOKE, VILLAGE, places } Place;
 
 /* What is seen from where: the view of the origin from back_m south of it and above_m over the ground. */
 typedef struct CostFrame {
@@ -56,6 +57,8 @@ static const CostFrame frames[] = {
     {"whole", BARE, 900, 300, 40, all_bands, true, true, SAMPLING_ALL},
     {"high", BARE, 1e5, 1e4, 20, all_bands, true, true, SAMPLING_ALL},
     {"quarter", WOODS, 1000, 200, 30, all_bands, true, false, SAMPLING_QUARTER},
+    {"village", VILLAGE, 150, 30, 40, all_bands, true, false, SAMPLING_ALL},
+    {"village-far", VILLAGE, 1000, 250, 16, all_bands, true, false, SAMPLING_ALL},
 };
 enum { frame_count = sizeof frames / sizeof *frames };
 
@@ -71,13 +74,22 @@ static struct {
     Landscape  landscape;
     Woods      woods;
     Catalog   *catalog;
-    World      world; /* the one that is closed: scenes have copies, most of them without its plants */
+    Scenery    village;
+    World      world; /* the one that is closed: scenes have copies, most without its plants, its village or both */
     TrialScene scene[places];
     Pool      *pool;
     Arena     *arena;
 } stage;
 
 /* ---- set-up --------------------------------------------------------------------------------- */
+
+/* A hundred houses in their streets, sixty cars, trailers and buses about them, of which four drive. */
+static Status build_village(void)
+{
+    const TownOf of = {.buildings = 100, .clutter = 60, .movers = 4, .landscape = &stage.landscape, .seed = 8};
+    const Status status = town_create(&stage.village, &of);
+    return status == STATUS_OK ? world_scenery(&stage.world, &stage.village, "avx2", stage.pool) : status;
+}
 
 /* Few steps and facets, no shadows: a hit reads its temperature the same way, and the warm-up is short. */
 static Status warm_world(double unix_s)
@@ -148,7 +160,7 @@ static Status place_vehicle(const TrialScene *scene, int k, double at_east_m, do
 static Status populate(TrialScene *scene, Place place)
 {
     const uint32_t running = 1u << 22, smoking = 3u << 5;
-    const int      vehicles = place == BARE ? 0 : place == VEHICLES ? 20 : place == CROWD ? 250 : 5;
+    const int      vehicles = place == BARE || place == VILLAGE ? 0 : place == VEHICLES ? 20 : place == CROWD ? 250 : 5;
     Status         status = STATUS_OK;
     for (int later = 0; later < (place == SMOKE ? 3 : 1) && status == STATUS_OK; later++) {
         for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
@@ -172,6 +184,7 @@ static Status open_scene(Place place, double unix_s)
                           .unix_s = unix_s,
                           .sun_now_s = 60};
     if (place != WOODS) scene->world.plants = NULL, scene->world.forest = NULL, scene->world.canopy = NULL;
+    if (place != VILLAGE) scene->world.scenery = NULL, scene->world.horizons = NULL;
     if (place == CROWD)
         scene->world.heat = NULL; /* hundreds of vehicles would warm up for longer than all frames take */
     config.ground = (ContactGround){.frame = &stage.frame, .elevation = &stage.landscape.elevation};
@@ -240,6 +253,7 @@ static Status count_all(int argc, char **argv)
     Status status = open_world(&unix_s);
     if (status == STATUS_OK) status = plant_world();
     if (status == STATUS_OK) status = warm_world(unix_s);
+    if (status == STATUS_OK) status = build_village();
     for (Place place = 0; place < places && status == STATUS_OK; place++) status = open_scene(place, unix_s);
     for (int k = 0; k < frame_count && status == STATUS_OK; k++) {
         Picture picture;
@@ -257,6 +271,7 @@ static void close_all(void)
         entity_table_destroy(stage.scene[place].table);
     }
     world_close(&stage.world);
+    scenery_free(&stage.village);
     woods_destroy(&stage.woods);
     catalog_close(stage.catalog);
     landscape_destroy(&stage.landscape);

@@ -80,24 +80,19 @@ static int hidden_group(const ModelPart *part) { return hidden_group_of(part->da
 static void nominate_box(const struct RTCBoundsFunctionArguments *a)
 {
     const NodeMesh *mesh = a->geometryUserPtr;
-    const Facet    *f = &mesh->facet[a->primID];
     const double    room_m = 1e-4 + 1e-5 * mesh->radius_m;
-    float           low[3], high[3];
-    if (!(f->height_m[0] > 0 && f->height_m[1] > 0 && f->height_m[2] > 0)) { /* zero area: never hit */
+    double          low[3], high[3];
+    parts_bound_patch(low, high, mesh, a->primID);
+    if (!(low[0] <= high[0])) {
         *a->bounds_o = (struct RTCBounds){.lower_x = NAN, .upper_x = NAN};
         return;
     }
-    for (int x = 0; x < 3; x++) {
-        const double p = f->corner[0][x], q = f->corner[1][x], r = f->corner[2][x];
-        low[x] = (float)(fmin(p, fmin(q, r)) - mesh->centre[x] - room_m);
-        high[x] = (float)(fmax(p, fmax(q, r)) - mesh->centre[x] + room_m);
-    }
-    *a->bounds_o = (struct RTCBounds){.lower_x = low[0],
-                                      .lower_y = low[1],
-                                      .lower_z = low[2],
-                                      .upper_x = high[0],
-                                      .upper_y = high[1],
-                                      .upper_z = high[2]};
+    *a->bounds_o = (struct RTCBounds){.lower_x = (float)(low[0] - mesh->centre[0] - room_m),
+                                      .lower_y = (float)(low[1] - mesh->centre[1] - room_m),
+                                      .lower_z = (float)(low[2] - mesh->centre[2] - room_m),
+                                      .upper_x = (float)(high[0] - mesh->centre[0] + room_m),
+                                      .upper_y = (float)(high[1] - mesh->centre[1] + room_m),
+                                      .upper_z = (float)(high[2] - mesh->centre[2] + room_m)};
 }
 
 static void measure_facet(Facet *f, const Model *model, uint32_t triangle)
@@ -169,7 +164,7 @@ static Status commit_mesh(NodeMesh *mesh, Tracer *tracer)
     rtcSetSceneBuildQuality(mesh->scene, RTC_BUILD_QUALITY_MEDIUM);
     RTCGeometry geometry = rtcNewGeometry(tracer->device, RTC_GEOMETRY_TYPE_USER);
     if (!geometry) return status_of_error(tracer->error);
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)mesh->triangle_count);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)mesh->patch_count);
     rtcSetGeometryUserData(geometry, mesh);
     rtcSetGeometryBoundsFunction(geometry, nominate_box, NULL);
     rtcSetGeometryIntersectFunction(geometry, parts_intersect);
@@ -198,7 +193,7 @@ static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *mesh
         if (part->node == node && hidden_group(part) == hidden_group_of(hidden)) mesh->triangle[at++] = (uint32_t)t;
     }
     for (int t = 0; t < triangle_count; t++) measure_facet(&mesh->facet[t], model, mesh->triangle[t]);
-    if (list_corners(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
+    if (parts_list_patches(mesh) != STATUS_OK || list_corners(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
     if (tracer->thin && parts_list_thin(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
     bound_mesh(mesh);
     return commit_mesh(mesh, tracer);
@@ -234,6 +229,7 @@ static void close_model(ModelMeshes *meshes)
         if (meshes->mesh[k].scene) rtcReleaseScene(meshes->mesh[k].scene);
         free(meshes->mesh[k].triangle);
         free(meshes->mesh[k].facet);
+        free(meshes->mesh[k].patch);
         free(meshes->mesh[k].corner);
         free(meshes->mesh[k].thin);
         free(meshes->mesh[k].block);

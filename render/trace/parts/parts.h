@@ -72,6 +72,9 @@ void parts_block_box(double corner[8][3], const PosedNode *node, int block);
 /* The node of the largest sphere; of equals, the first. */
 int parts_largest_node(const PosedEntity *entity);
 
+/* Low and high corner of a box in its axes about its patch number k (a triangle, or neighbours with much the same box);
+ * low above high: none of it has an area. False: k is out of range. */
+bool parts_node_patch(double box[2][3], const PosedNode *node, int k);
 /* The three corners of its triangle number k, in its axes; NULL: k is out of range. */
 const double (*parts_node_triangle(const PosedNode *node, int k))[3];
 

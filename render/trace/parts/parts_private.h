@@ -17,10 +17,12 @@ struct NodeMesh {
     const Model *model;
     int          node;
     uint8_t      damage_hidden; /* of all its parts: ModelPart */
-    RTCScene     scene;         /* of its triangles' boxes, with margin, about `centre` */
+    RTCScene     scene;         /* of its patches' boxes, with margin, about `centre` */
     int          triangle_count;
     uint32_t    *triangle; /* of the model, ascending */
-    Facet       *facet;    /* in the same order, which is Embree's too */
+    Facet       *facet;    /* in the same order */
+    int          patch_count;
+    uint32_t    *patch; /* [patch_count + 1]: first facet of each; facets of a patch share one of Embree's boxes */
     int          corner_count;
     double (*corner)[3];   /* every vertex of its triangles, once; the outermost first */
     double (*block)[2][3]; /* of every parts_block_corners of them: low and high, with margin */
@@ -30,6 +32,11 @@ struct NodeMesh {
     int      thin_count;
     ThinBox *thin;
 };
+
+/* Sets patch and patch_count, of facets that are there (parts_patches.c). */
+Status parts_list_patches(NodeMesh *mesh);
+/* A box about a patch, node axes; low above high: none of its facets has an area. */
+void parts_bound_patch(double low[3], double high[3], const NodeMesh *mesh, uint32_t patch);
 
 /* Sets thin and thin_count (parts_thin.c). */
 Status parts_list_thin(NodeMesh *mesh);

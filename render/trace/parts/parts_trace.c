@@ -84,10 +84,8 @@ static void offer_lowest(Packet *p, int lane, uint32_t triangle, double at_m)
     p->lowest_m[lane] = at_m;
 }
 
-/* Fields of N rays lie one after another (rtcore_ray.h), and they may stand in any order. */
-void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
+static inline void intersect_facet(const struct RTCIntersectFunctionNArguments *a, Packet *p, uint32_t facet)
 {
-    Packet         *p = (Packet *)a->context;
     const unsigned  n = a->N;
     float          *end_m = (float *)a->rayhit + 8 * n;
     const uint32_t *id = (const uint32_t *)a->rayhit + 10 * n;
@@ -96,26 +94,33 @@ void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
     for (unsigned k = 0; k < n; k++) {
         if (!a->valid[k]) continue;
         const int lane = (int)id[k], four = lane / 4, bit = lane % 4;
-        if (!(v.judged >> four & 1)) judge(&v, p, &p->mesh->facet[a->primID], four);
+        if (!(v.judged >> four & 1)) judge(&v, p, &p->mesh->facet[facet], four);
         if (!(v.near[four] >> bit & 1)) continue;
         const double at_m = v.at_m[lane];
         if (p->lowest_only) {
-            offer_lowest(p, lane, a->primID, at_m);
+            offer_lowest(p, lane, facet, at_m);
             continue;
         }
         if (!(at_m <= p->nearest_m[lane] + same_range_m)) continue;
         if (v.through[four] >> bit & 1 && at_m < p->nearest_m[lane]) {
-            bring_nearer(p, lane, a->primID, at_m);
+            bring_nearer(p, lane, facet, at_m);
             const float stop_m = (float)(at_m + slack_m);
             if (stop_m < p->end_m[lane]) end_m[k] = p->end_m[lane] = stop_m;
         }
-        keep_tie(p, lane, a->primID, at_m);
+        keep_tie(p, lane, facet, at_m);
     }
 }
 
-void parts_occlude(const struct RTCOccludedFunctionNArguments *a)
+/* Fields of N rays lie one after another (rtcore_ray.h), and they may stand in any order. */
+void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
 {
     Packet         *p = (Packet *)a->context;
+    const uint32_t *patch = p->mesh->patch + a->primID;
+    for (uint32_t facet = patch[0]; facet < patch[1]; facet++) intersect_facet(a, p, facet);
+}
+
+static inline void occlude_facet(const struct RTCOccludedFunctionNArguments *a, Packet *p, uint32_t facet)
+{
     const unsigned  n = a->N;
     float          *end_m = (float *)a->ray + 8 * n;
     const uint32_t *id = (const uint32_t *)a->ray + 10 * n;
@@ -124,11 +129,18 @@ void parts_occlude(const struct RTCOccludedFunctionNArguments *a)
     for (unsigned k = 0; k < n; k++) {
         if (!a->valid[k]) continue;
         const int lane = (int)id[k], four = lane / 4;
-        if (!(v.judged >> four & 1)) judge(&v, p, &p->mesh->facet[a->primID], four);
+        if (!(v.judged >> four & 1)) judge(&v, p, &p->mesh->facet[facet], four);
         if (!(v.near[four] & v.through[four] & 1u << lane % 4 && v.at_m[lane] < p->far_m[lane])) continue;
         end_m[k] = -INFINITY;
         p->nearest_m[lane] = 0; /* met */
     }
+}
+
+void parts_occlude(const struct RTCOccludedFunctionNArguments *a)
+{
+    Packet         *p = (Packet *)a->context;
+    const uint32_t *patch = p->mesh->patch + a->primID;
+    for (uint32_t facet = patch[0]; facet < patch[1]; facet++) occlude_facet(a, p, facet);
 }
 
 /* ---- queries ------------------------------------------------------------------------------------ */

@@ -138,16 +138,16 @@ typedef struct List {
     Listed of[most_listed];
 } List;
 
-/* Objects of both trees within, nearest along the axis first. */
-static void list_objects(List *out, const SceneryFrame *f, const Planes *in, const double axis[3], bool bent)
+/* Objects of one tree or of two (other: NULL: one) within, nearest along the axis first. */
+static void list_objects(List *out, const SceneryFrame *f, const BroadPhase *tree, const BroadPhase *other,
+                         const Planes *in, const double axis[3], bool bent)
 {
     const BroadLift *lift = raises(f, bent) ? &f->lift : NULL;
     const double(*plane)[4] = (const double(*)[4])in->plane;
     int object[most_listed];
-    int count = broad_phase_some_in_planes(object, most_listed, f->of->tree, lift, plane, in->count);
-    if (count >= 0 && f->tree) {
-        const int more =
-            broad_phase_some_in_planes(object + count, most_listed - count, f->tree, lift, plane, in->count);
+    int count = broad_phase_some_in_planes(object, most_listed, tree, lift, plane, in->count);
+    if (count >= 0 && other) {
+        const int more = broad_phase_some_in_planes(object + count, most_listed - count, other, lift, plane, in->count);
         count = more < 0 ? -1 : count + more;
     }
     out->count = count;
@@ -308,7 +308,8 @@ static void scenery_first(double *range_m, void *found, const TraceBlock *block,
     memcpy(limit_m, block->limit_m, (size_t)b.count * sizeof *limit_m);
     memset(of->object, 0, (size_t)b.count * sizeof *of->object);
     const bool by_tree = skips(f->skips_off, SKIP_SCENERY);
-    if (by_tree && pyramid_of(&planes, axis, &b, limit_m)) list_objects(&list, f, &planes, axis, b.bent);
+    if (by_tree && pyramid_of(&planes, axis, &b, limit_m))
+        list_objects(&list, f, f->of->tree, f->tree, &planes, axis, b.bent);
     if (list.count != 0) order_rays(order, b.count, b.columns);
     if (list.count > 0 || !by_tree)
         asked += meet_by_runs(limit_m, of, f, by_tree ? &list : NULL, &b, order, block->counters);
@@ -409,16 +410,42 @@ static uint64_t shade_by_crowd(uint8_t *dark, const SceneryFrame *f, const Broad
     return counts.asked;
 }
 
-/* Traced only for rays that nothing has stopped. */
+/* Rays of a list (NULL: all) against the objects of one tree; NULL: against every object, one after the other. */
+static uint64_t shade_by_tree(uint8_t *dark, const SceneryFrame *f, const BroadPhase *tree, const Bundle *all,
+                              const int *ray, int count, const double way[3], VisibilityCounters *counters)
+{
+    double              start[3][hits_capacity];
+    uint8_t             met[hits_capacity];
+    const double *const o[3] = {start[0], start[1], start[2]};
+    const Bundle        some = {o, all->d, count, 0, false}, *b = ray ? &some : all;
+    List                list;
+    Planes              planes;
+    uint64_t            asked;
+    if (count == 0) return 0;
+    for (int k = 0; k < count && ray; k++)
+        for (int c = 0; c < 3; c++) start[c][k] = all->o[c][ray[k]];
+    memset(met, 0, sizeof met);
+    if (!tree) {
+        asked = shade_by_runs(met, f, NULL, b, way, counters);
+    } else {
+        prism_of(&planes, b, way);
+        list_objects(&list, f, tree, NULL, &planes, way, false);
+        if (list.count == 0) return 0;
+        asked =
+            list.count > 0 ? shade_by_runs(met, f, &list, b, way, counters) : shade_by_crowd(met, f, tree, b, counters);
+    }
+    for (int k = 0; k < count; k++) dark[ray ? ray[k] : k] |= met[k];
+    return asked;
+}
+
+/* Traced only for rays that nothing has stopped, against what stands only for those that do not pass above it. */
 static void scenery_any(const TraceShadow *s, const void *self)
 {
     const SceneryFrame *f = self;
     double              start[3][hits_capacity], way[3][hits_capacity];
-    int                 ray[hits_capacity], left = 0;
+    int                 ray[hits_capacity], below[hits_capacity], left = 0;
     uint8_t             dark[hits_capacity];
     const double *const o[3] = {start[0], start[1], start[2]}, *const d[3] = {way[0], way[1], way[2]};
-    List     list = {.count = -1};
-    Planes   planes;
     uint64_t asked = 0;
     for (int i = 0; i < s->count; i++) {
         if (s->dark[i] && skips(f->skips_off, SKIP_SUN_STOPPED)) continue;
@@ -428,16 +455,12 @@ static void scenery_any(const TraceShadow *s, const void *self)
     s->counters->skipped[SKIP_SUN_STOPPED] += (uint64_t)(s->count - left);
     if (left == 0) return;
     const Bundle b = {o, d, left, 0, false};
-    const bool   by_tree = skips(f->skips_off, SKIP_SCENERY);
-    if (by_tree) {
-        prism_of(&planes, &b, s->way_enu);
-        list_objects(&list, f, &planes, s->way_enu, false);
-    }
-    if (list.count > 0 || !by_tree)
-        asked += shade_by_runs(dark, f, by_tree ? &list : NULL, &b, s->way_enu, s->counters);
-    if (by_tree && list.count < 0) {
-        asked += shade_by_crowd(dark, f, f->of->tree, &b, s->counters);
-        if (f->tree) asked += shade_by_crowd(dark, f, f->tree, &b, s->counters);
+    if (!skips(f->skips_off, SKIP_SCENERY)) {
+        asked = shade_by_tree(dark, f, NULL, &b, NULL, left, s->way_enu, s->counters);
+    } else {
+        const int count = scenery_heights_below(below, f->of->heights, o, left, s->way_enu);
+        asked = shade_by_tree(dark, f, f->of->tree, &b, below, count, s->way_enu, s->counters);
+        if (f->tree) asked += shade_by_tree(dark, f, f->tree, &b, NULL, left, s->way_enu, s->counters);
     }
     for (int k = 0; k < left; k++) s->dark[ray[k]] |= dark[k];
     s->counters->rays_sun_scenery += asked;

@@ -105,8 +105,9 @@ static Status plant_tree(SceneryTracer *t)
         sphere[t->drawable++][3] = e->radius_m;
     }
     const Status status = broad_phase_create(&t->tree, item, (const double(*)[4])sphere, t->drawable, t->arena);
-    if (status == STATUS_OK) broad_phase_tighten(t->tree, box_that_stands, t);
-    return status;
+    if (status != STATUS_OK) return status;
+    broad_phase_tighten(t->tree, box_that_stands, t);
+    return scenery_heights_create(&t->heights, t->posed, t->scenery->objects, t->arena);
 }
 
 static Status pose_objects(SceneryTracer *t)

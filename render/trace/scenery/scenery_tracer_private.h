@@ -3,22 +3,24 @@
 #ifndef RENDER_TRACE_SCENERY_SCENERY_TRACER_PRIVATE_H
 #define RENDER_TRACE_SCENERY_SCENERY_TRACER_PRIVATE_H
 
+#include "render/trace/scenery/scenery_heights_private.h"
 #include "render/trace/scenery/scenery_tracer.h"
 #include "render/trace/visibility/crowd.h"
 
 struct SceneryTracer {
-    const Scenery *scenery;
-    Tracer        *tracer;           /* of its models */
-    Arena         *arena;            /* of all that follows */
-    NodePose     **rest;             /* [models][nodes] */
-    PosedEntity   *posed;            /* [objects]; of those that drive model is -1 */
-    int           *mover;            /* [objects]: index + 1 of SceneryFrame.moved; 0: it stands as it is */
-    int            moved;            /* of Scenery.mover, and behind them objects whose damage changes: */
-    int           *harmed;           /* [moved - movers]: objects */
-    BroadPhase    *tree;             /* of those that stand */
-    int            drawable, moving; /* objects that stand, and that drive, and have something to meet */
-    int           *row_first;        /* [models] of row */
-    int           *row;              /* [parts][model_damage_states]: rows of materials */
+    const Scenery  *scenery;
+    Tracer         *tracer;           /* of its models */
+    Arena          *arena;            /* of all that follows */
+    NodePose      **rest;             /* [models][nodes] */
+    PosedEntity    *posed;            /* [objects]; of those that drive model is -1 */
+    int            *mover;            /* [objects]: index + 1 of SceneryFrame.moved; 0: it stands as it is */
+    int             moved;            /* of Scenery.mover, and behind them objects whose damage changes: */
+    int            *harmed;           /* [moved - movers]: objects */
+    BroadPhase     *tree;             /* of those that stand */
+    SceneryHeights *heights;          /* likewise; NULL: not known */
+    int             drawable, moving; /* objects that stand, and that drive, and have something to meet */
+    int            *row_first;        /* [models] of row */
+    int            *row;              /* [parts][model_damage_states]: rows of materials */
 };
 
 struct SceneryFrame {
