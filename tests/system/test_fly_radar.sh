@@ -29,7 +29,7 @@ check "radar: within the vehicle's length: $(value radar miss_m)" is "$(value ra
 
 # ---- the same radar in a flight of a scenario
 sed -e '$a shots:\n  - {name: Missile, id: 41, type: 2.2.225.1.1.3.0, from: Heli 31, at: Truck 21, time_s: 1, flies: ir_ag}' "$tmp/short.yaml" >"$tmp/shot.yaml"
-run fly "$tmp/shot.yaml" --sight radar -- --rate 8 --size 32x24 "${bare[@]}" --set terrain.woods=off "${radar[@]}"
+run fly "$tmp/shot.yaml" --sight radar -- --rate 5 --size 32x24 "${bare[@]}" --set terrain.woods=off "${radar[@]}"
 check "fly --sight radar: ended with $code" [ "$code" = 0 ]
 tail -n 1 "$tmp/stdout"
 check "fly --sight radar: nearly all frames had a detection, and guided" awk -F, 'END { exit !($12 > 0.5 && $14 >= $13 - 3 && $9 < 10) }' "$tmp/stdout"
