@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A node's own missile by its other sights: an operator's aim, who presses the key; truth, from a place at a time, and the seeker's
-# radar, both in a replay of a recording that holds no flight. And what is refused. labels: small
+# A node's own missile by its other sights: an operator's aim, who presses the key; truth, from a shooter and from a place, in replays
+# of a recording that holds no flight. And what is refused. labels: small
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 judges python3.numpy
@@ -38,7 +38,7 @@ check "operator: replays" [ "$code" = 0 ]
 check "operator: the same octets" cmp -s "$tmp/operated/flight.pcapng" "$tmp/operated-again/flight.pcapng"
 check "operator: the same flight" cmp -s "$tmp/operated/flight.csv" "$tmp/operated-again/flight.csv"
 
-# ---- truth and radar, in replays of an exercise without a flight
+# ---- truth, in replays of an exercise without a flight
 sed 's/duration_s: 900/duration_s: 8/' "$tmp/road.yaml" >"$tmp/short.yaml"
 run exercise "$tmp/short.yaml" -o "$tmp/road.pcap"
 flown() { # NAME options
@@ -54,17 +54,6 @@ flown place --rate 10 --bands lwir --set flight.from=36.0009,-122.9922,250 --set
 check "from a place: hits within 0.3 m: $(value place miss_m)" is "$(value place miss_m)" '<' 0.3
 flown coasts --rate 4 --bands lwir --set flight.late_s=2
 check "coasts, without a sight in time: $(value coasts miss_m)" is "$(value coasts miss_m)" '>' 6
-radar=(--bands lwir,radar --set radar.preset=pulse_doppler_ku --set radar.ground=false --set radar.ground_bounce=false)
-flown radar --rate 8 "${radar[@]}" --sight radar
-check "radar: guided: $(value radar guided_share)" is "$(value radar guided_share)" '>' 0.5
-check "radar: within the vehicle's length: $(value radar miss_m)" is "$(value radar miss_m)" '<' 6
-
-# ---- the same radar in a flight of a scenario
-sed -e '$a shots:\n  - {name: Missile, id: 41, type: 2.2.225.1.1.3.0, from: Heli 31, at: Truck 21, time_s: 1, flies: ir_ag}' "$tmp/short.yaml" >"$tmp/shot.yaml"
-run fly "$tmp/shot.yaml" --sight radar -- --rate 8 --size 32x24 "${bare[@]}" --set terrain.woods=off "${radar[@]}"
-check "fly --sight radar: ended with $code" [ "$code" = 0 ]
-tail -n 1 "$tmp/stdout"
-check "fly --sight radar: nearly all frames had a detection, and guided" awk -F, 'END { exit !($12 > 0.5 && $14 >= $13 - 3 && $9 < 10) }' "$tmp/stdout"
 
 # ---- refused, and said
 refused() { # refused WHAT CODE PATTERN options
