@@ -3,7 +3,8 @@
 
 #include "pitviper_simd.h"
 
-static const double before_cells = 1.2;
+/* behind_m: a place may be so far behind the nearest wall's plane, as below eaves, and is before it. */
+static const double before_cells = 1.2, behind_m = 0.6, least_away_m = 0.02;
 
 static const HorizonCell *cell_at(const SkyHorizons *h, int i, int j)
 {
@@ -70,10 +71,15 @@ typedef struct Seen {
 static const float sine[8] = {0, 0.70710678f, 1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f};
 static const float cosine[8] = {1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f, 0, 0.70710678f};
 
+static bool is_level(const float n[3]) { return n[2] > 0.5f; }
+
 typedef struct Facet {
-    F32x8 aside, behind, up, all; /* of sectors: normal along them and against; open light */
-    F32x8 sunny, shaded; /* of the walls there that face us: cosine of the sun, share of their ground that is shaded */
-    float open;
+    F32x8  aside, behind, up, all; /* of sectors: normal along them and against; open light */
+    F32x8  sunny, deep; /* of walls there that face us: cosine of the sun, and depth of their shadow in their heights */
+    float  open;
+    bool   level; /* rather than upright */
+    double sun_enu[2], per_sun_up;
+    const double (*facing_enu)[2];
 } Facet;
 
 /* Whether nothing about a cell hides any sky. */
@@ -82,37 +88,117 @@ static bool is_open(const HorizonCell *cell)
     uint64_t slopes;
     _Static_assert(sizeof slopes == sizeof cell->slope, "eight octets");
     memcpy(&slopes, cell->slope, sizeof slopes);
-    return slopes == 0;
+    return slopes == 0 && cell->wall_rise == 0;
+}
+
+/* A cell's nearest wall from a place: what of each sector it fills, and the tangent of its edge there. */
+typedef struct WallSeen {
+    F32x8 filled, tangent;
+    float lit, deep; /* cosine of the sun on it, depth of its shadow in its heights */
+} WallSeen;
+
+/* Arc tangent of y / x, x > 0, in sectors; within 0.005. */
+static float sectors_of(float y, float x)
+{
+    const float a = fabsf(y), low = a < x ? a / x : x / a, arc = low * (1 + 0.3476f * (1 - low));
+    return copysignf(a < x ? arc : 2 - arc, y);
+}
+
+/* sin^2 of the elevation of a wall's edge so many sectors aside. edge: its tangent square before the place. */
+static F32x8 sine2_to(F32x8 sectors, F32x8 edge)
+{
+    const F32x8 angle = sectors * f32x8_set(0.25 * pi_rad), angle2 = angle * angle;
+    const F32x8 slant = f32x8_fma(angle2, f32x8_fma(angle2, f32x8_set(0.03705), f32x8_set(-0.4967)), f32x8_set(1));
+    const F32x8 tangent = f32x8_clamp(edge * slant, 0, 1e3), tangent2 = tangent * tangent;
+    return tangent2 / (f32x8_set(1) + tangent2);
+}
+
+static void wall_seen(WallSeen *out, const HorizonCell *cell, float z_m, const Facet *f, const double off_m[2])
+{
+    static const float number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const F32x8        half = f32x8_set(0.5), none = f32x8_set(0), one = f32x8_set(1);
+    const double      *n = f->facing_enu[cell->wall_facing], sun = n[0] * f->sun_enu[0] + n[1] * f->sun_enu[1];
+    const double       there_m = cell->wall_away * horizon_away_step_m + n[0] * off_m[0] + n[1] * off_m[1];
+    const double       over_m = fmax((double)(z_m - cell->ground_m), 0);
+    const double       rise_m = cell->wall_rise * horizon_wall_step_m - over_m;
+    *out = (WallSeen){none, none, (float)fmax(sun, 0), (float)(fmax(-sun, 0) * f->per_sun_up)};
+    if (!(rise_m > 0 && there_m > -behind_m)) return;
+    const float  away_m = (float)fmax(there_m, least_away_m), right_m = (float)(n[0] * off_m[1] - n[1] * off_m[0]);
+    const double left = cell->wall_left == 255 ? 1e3 : cell->wall_left * horizon_wall_step_m;
+    const double right = cell->wall_right == 255 ? 1e3 : cell->wall_right * horizon_wall_step_m;
+    const F32x8  first = _mm256_set1_ps(sectors_of(-(float)left - right_m, away_m));
+    const F32x8  last = _mm256_set1_ps(sectors_of((float)right - right_m, away_m));
+    /* sectors' middles from where the wall is square before the place, -4 .. 4 */
+    F32x8 at = f32x8_load(number) - f32x8_set(cell->wall_facing / 32.0 + 4);
+    at = at - f32x8_set(8) * f32x8_floor(f32x8_fma(at, f32x8_set(0.125), half));
+    const F32x8 from = f32x8_max(at - half, first), to = f32x8_min(at + half, last);
+    out->filled = f32x8_clamp(to - from, 0, 1);
+    const F32x8 mid = half * (from + to), aside = f32x8_set(0.28867513) * out->filled,
+                edge = f32x8_set(rise_m / (double)away_m);
+    const F32x8 sine2 = half * (sine2_to(mid - aside, edge) + sine2_to(mid + aside, edge)); /* Gauss's two places */
+    out->tangent = f32x8_sqrt(sine2 / (one - sine2));
+}
+
+/* Of the ground before a wall, as it shines on level ground at r of its heights: what its shadow covers of what is seen
+ * by the half of it, of its light, that is the lower, z of its heights up: cos h of that is the mean of 1 and cos of
+ * its top's. deep: of the shadow, in its heights. */
+static F32x8 shade_before(F32x8 tangent, F32x8 deep)
+{
+    const F32x8 one = f32x8_set(1), half = f32x8_set(0.5);
+    const F32x8 t = f32x8_max(tangent, f32x8_set(0.05)); /* farther off it stays, and 1 - cos h is rounded away */
+    const F32x8 middle = f32x8_fma(half, one / f32x8_sqrt(f32x8_fma(t, t, one)), half);
+    const F32x8 z = f32x8_sqrt(one - middle * middle) / (middle * t);
+    return one - z / f32x8_sqrt(f32x8_fma(deep, deep, z * z));
+}
+
+/* On a place that is upright the mean over the wall's height. */
+static F32x8 shade_of(const Facet *f, F32x8 tangent, F32x8 deep)
+{
+    const F32x8 one = f32x8_set(1);
+    if (f->level) return shade_before(tangent, deep);
+    return one + deep - f32x8_sqrt(f32x8_fma(deep, deep, one));
 }
 
 /* What one cell leaves and hides, for a place at this height. before_m: the cell is that far before the place, along
- * the normal: what makes its horizon is as much farther from the place. own: what is behind it, else it stays. */
+ * the normal: what makes its horizon is as much farther from the place. off_m: the place is this far east and north of
+ * the cell, which the nearest wall knows. own: what is behind it, else it stays. */
 static void cell_seen(F32x8 *left, F32x8 *lit, F32x8 *shaded, F32x8 *own, const HorizonCell *cell, float z_m,
-                      const Facet *f, double before_m)
+                      const Facet *f, double before_m, const double off_m[2])
 {
+    const F32x8 one = f32x8_set(1);
     const F32x8 code = f32x8_of_ints(i32x8_of_bytes(cell->slope)) * f32x8_set(1.0 / 255);
     const F32x8 high = f32x8_of_ints(i32x8_of_bytes(cell->height)) * f32x8_set(horizon_height_step_m);
     const F32x8 over = _mm256_set1_ps(z_m - cell->ground_m > 0 ? z_m - cell->ground_m : 0);
-    const F32x8 near = code / f32x8_sqrt(f32x8_max(f32x8_set(1) - code * code, f32x8_set(1e-6)));
-    const F32x8 more = f32x8_fma(near * f32x8_set(before_m), f32x8_max(f->aside, f32x8_set(0)) / high, f32x8_set(1));
-    const F32x8 tangent = near / more * f32x8_clamp(f32x8_set(1) - over / high, 0, 1);
+    const F32x8 near = code / f32x8_sqrt(f32x8_max(one - code * code, f32x8_set(1e-6)));
+    const F32x8 more = f32x8_fma(near * f32x8_set(before_m), f32x8_max(f->aside, f32x8_set(0)) / high, one);
+    const F32x8 tangent = near / more * f32x8_clamp(one - over / high, 0, 1);
+    F32x8       behind = f32x8_greater(code, f32x8_set(0.24));
     *left = f32x8_min(above(tangent, f->aside, f->up), f->all);
     *lit = (f->all - *left) * f->sunny;
-    *shaded = (f->all - *left) * f->shaded;
-    *own = f32x8_and(high * f->behind, f32x8_greater(code, f32x8_set(0.24)));
+    *shaded = (f->all - *left) * shade_of(f, tangent, f->deep);
+    if (cell->wall_rise > 0) {
+        WallSeen wall;
+        wall_seen(&wall, cell, z_m, f, off_m);
+        const F32x8 open = f32x8_min(above(wall.tangent, f->aside, f->up), f->all), fills = f->all - open;
+        *left = f32x8_lerp(*left, open, wall.filled);
+        *lit = f32x8_lerp(*lit, fills * _mm256_set1_ps(wall.lit), wall.filled);
+        *shaded = f32x8_lerp(*shaded, fills * shade_of(f, wall.tangent, _mm256_set1_ps(wall.deep)), wall.filled);
+        behind = f32x8_or(behind, f32x8_greater(wall.filled, f32x8_set(0.5)));
+    }
+    *own = f32x8_and(high * f->behind, behind);
 }
 
-/* Adds four cells, of these weights. own: what is behind the place is asked for. */
+/* What four cells know of a place. off_m: as cell_seen. own: what is behind the place is asked for. */
 static void add_cells(Seen *to, const HorizonCell *const cell[4], const float weight[4], float z_m, const Facet *f,
-                      double before_m, bool own)
+                      double before_m, const double off_m[4][2], bool own)
 {
     F32x8 first[8], second[8]; /* what is left and lit, what is shaded and behind */
     float sum[8], more[8];
     bool  some = false;
     for (int k = 0; k < 4; k++) {
         first[k] = f->all, first[4 + k] = second[k] = second[4 + k] = f32x8_set(0); /* where nothing hides any sky */
-        if (!cell[k] || !(f->open > 1e-4f) || is_open(cell[k])) continue;
-        cell_seen(&first[k], &first[4 + k], &second[k], &second[4 + k], cell[k], z_m, f, before_m);
+        if (!cell[k] || !(f->open > 1e-4f) || is_open(cell[k]) || !(weight[k] > 0)) continue;
+        cell_seen(&first[k], &first[4 + k], &second[k], &second[4 + k], cell[k], z_m, f, before_m, off_m[k]);
         some = true;
     }
     if (some) f32x8_store(sum, sums8(first)), f32x8_store(more, sums8(second));
@@ -127,6 +213,16 @@ static void add_cells(Seen *to, const HorizonCell *const cell[4], const float we
         to->shaded += weight[k] * more[k] / f->open;
         if (own) to->own_high_m += weight[k] * more[4 + k];
     }
+}
+
+/* Cells that something covers say nothing where others do. */
+static void leave_covered(float weight[4], const HorizonCell *const cell[4])
+{
+    float left = 0;
+    for (int k = 0; k < 4; k++)
+        if (!cell[k] || !cell[k]->covered) left += weight[k];
+    if (!(left > 0.02f) || left == 1) return;
+    for (int k = 0; k < 4; k++) weight[k] = !cell[k] || !cell[k]->covered ? weight[k] / left : 0;
 }
 
 /* A place somewhat before its surface, so that its cell is not that of what it is on. light: NULL: the sun is not asked
@@ -150,17 +246,29 @@ static Seen seen_at(const SkyHorizons *h, double x_m, double y_m, float z_m, con
     f.behind = f32x8_max(none - f.aside, none);
     const float behind = sum8(f.behind);
     f.behind = f.behind * _mm256_set1_ps(behind > 0.1f ? 1 / behind : 0);
-    f.sunny = f.shaded = none;
+    f.sunny = f.deep = none;
+    f.level = is_level(n);
+    f.sun_enu[0] = f.sun_enu[1] = f.per_sun_up = 0;
+    f.facing_enu = (const double(*)[2])h->facing_enu;
     if (light) {
         const F32x8 sun_east = _mm256_set1_ps(light->sun_enu[0]), sun_north = _mm256_set1_ps(light->sun_enu[1]);
-        f.sunny = f32x8_max(none - f32x8_fma(sun_east, east, sun_north * north), none);
-        f.shaded = f32x8_load(light->shaded);
+        const F32x8 along = f32x8_fma(sun_east, east, sun_north * north);
+        for (int c = 0; c < 2; c++) f.sun_enu[c] = (double)light->sun_enu[c];
+        f.per_sun_up = light->sun_enu[2] > 0.02f ? 1 / (double)light->sun_enu[2] : 0;
+        f.sunny = f32x8_max(none - along, none);
+        f.deep = f32x8_max(along, none) * f32x8_set(f.per_sun_up);
     }
     f.all = above(none, f.aside, f.up);
     f.open = sum8(f.all);
-    const float u = (float)(x - i), v = (float)(y - j),
-                weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-    add_cells(&seen, cell, weight, z_m, &f, before_cells * h->cell_m, own);
+    const float u = (float)(x - i), v = (float)(y - j);
+    float       weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+    double      off_m[4][2];
+    for (int k = 0; k < 4; k++) {
+        off_m[k][0] = x_m - h->x0_m - (i + (k & 1)) * h->cell_m;
+        off_m[k][1] = y_m - h->y0_m - (j + (k >> 1)) * h->cell_m;
+    }
+    leave_covered(weight, cell);
+    add_cells(&seen, cell, weight, z_m, &f, before_cells * h->cell_m, (const double(*)[2])off_m, own);
     return seen;
 }
 
@@ -185,12 +293,7 @@ void sky_horizon_light(SkyHorizonLight *out, const SkyHorizons *h, const Air *ai
         out->sunlit_wall[b] = (float)(b >= AIR_MWIR ? 0 : h->wall_rho[b] * sun);
         out->level_sun[b] = (float)(sun * up > 0 ? sun * up / (sun * up + sky) : 0);
         out->wall_by_sun[b] = b >= AIR_MWIR ? 0 : (float)(0.5 * h->wall_rho[b] * level_w_m2[b]) * out->level_sun[b];
-    }
-    /* A wall without ends that is turned away from the sun: its shadow is away / up times its height deep, and fills
-     * of the ground that a place on it sees 1 - z / sqrt(z^2 + deep^2), on the mean over the wall this. */
-    for (int s = 0; s < sky_horizon_sectors && up > 0.02; s++) {
-        const float deep = fmaxf(out->sun_enu[0] * sine[s] + out->sun_enu[1] * cosine[s], 0) / out->sun_enu[2];
-        out->shaded[s] = 1 + deep - sqrtf(1 + deep * deep);
+        out->wall_by_sky[b] = b >= AIR_MWIR ? 0 : (float)(0.5 * h->wall_rho[b] * level_w_m2[b]) - out->wall_by_sun[b];
     }
 }
 
@@ -208,7 +311,7 @@ void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, cons
 {
     const F32x8 sky = f32x8_load(light->sky), level = f32x8_load(light->level), wall = f32x8_load(light->wall);
     const F32x8 sunlit = f32x8_load(light->sunlit_wall), level_sun = f32x8_load(light->level_sun);
-    const F32x8 by_sun = f32x8_load(light->wall_by_sun);
+    const F32x8 by_sun = f32x8_load(light->wall_by_sun), by_sky = f32x8_load(light->wall_by_sky);
     for (int i = 0; i < hits->count; i++) {
         if (hits->kind[i] != hit_ground && hits->kind[i] != hit_scenery) continue;
         const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
@@ -220,8 +323,10 @@ void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, cons
         if (seen.share == 1 && shade == 0) continue;
         const F32x8 up = _mm256_set1_ps(0.5f * (1 + n[2])), down = _mm256_set1_ps(0.5f * (1 - n[2])) * level;
         const F32x8 open = f32x8_max(sky * up + down, f32x8_set(1e-20));
-        const F32x8 walls = _mm256_set1_ps(1 - seen.share) * wall + _mm256_set1_ps(seen.lit) * sunlit -
-                            _mm256_set1_ps(seen.shaded) * by_sun;
+        /* what lights the foot of a wall is the ground before it, which has as little of the sky as this place */
+        const float hidden = 1 - seen.share, before = is_level(n) ? hidden * hidden : 0;
+        const F32x8 walls = _mm256_set1_ps(hidden) * wall + _mm256_set1_ps(seen.lit) * sunlit -
+                            _mm256_set1_ps(seen.shaded) * by_sun - _mm256_set1_ps(before) * by_sky;
         const F32x8 below = down * (f32x8_set(1) - _mm256_set1_ps(shade) * level_sun);
         f32x8_store(of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + below) / open);
         for (int b = 0; b < AIR_BAND_COUNT; b++)

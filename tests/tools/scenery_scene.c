@@ -95,6 +95,7 @@ int main(int argc, char **argv)
     for (int c = 0; c < optical_channel_count; c++) m->ground_rho[c] = ground_rho;
     const TownOf of = {.buildings = 1, .middle_enu = {51, 51}, .landscape = &w.landscape, .seed = 5};
     ok = town_create(&scenery, &of) == STATUS_OK;
+    if (ok) strcpy(scenery.model[0].part[0].material, "brick_red"); /* no ground is of it, as some is of concrete */
     const double ground_m = elevation_height(&w.landscape.elevation, 0, 0, NULL);
     for (int k = 0; k < 3 && ok; k++) {
         const int row = materials_find(m, scenery.model[0].part[k].material);
