@@ -306,9 +306,10 @@ static float own_shade(const SkyHorizonLight *light, const Seen *seen, const flo
     return 1 - z_m / sqrtf(z_m * z_m + deep_m * deep_m);
 }
 
-void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, const SkyHorizonLight *light,
-                      unsigned air_bands, const Hits *hits)
+bool sky_horizon_open(float (*factor)[hits_capacity], float (*below)[hits_capacity], const SkyHorizons *h,
+                      const SkyHorizonLight *light, unsigned air_bands, const Hits *hits)
 {
+    bool        any = false;
     const F32x8 sky = f32x8_load(light->sky), level = f32x8_load(light->level), wall = f32x8_load(light->wall);
     const F32x8 sunlit = f32x8_load(light->sunlit_wall), level_sun = f32x8_load(light->level_sun);
     const F32x8 by_sun = f32x8_load(light->wall_by_sun), by_sky = f32x8_load(light->wall_by_sky);
@@ -327,9 +328,13 @@ void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, cons
         const float hidden = 1 - seen.share, before = is_level(n) ? hidden * hidden : 0;
         const F32x8 walls = _mm256_set1_ps(hidden) * wall + _mm256_set1_ps(seen.lit) * sunlit -
                             _mm256_set1_ps(seen.shaded) * by_sun - _mm256_set1_ps(before) * by_sky;
-        const F32x8 below = down * (f32x8_set(1) - _mm256_set1_ps(shade) * level_sun);
-        f32x8_store(of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + below) / open);
+        const F32x8 left = f32x8_set(1) - _mm256_set1_ps(shade) * level_sun;
+        float       sunny[8];
+        f32x8_store(of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + down * left) / open);
+        f32x8_store(sunny, left);
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            if (air_bands >> b & 1) factor[b][i] *= of[b];
+            if (air_bands >> b & 1) factor[b][i] *= of[b], below[b][i] *= sunny[b];
+        any |= shade > 0;
     }
+    return any;
 }

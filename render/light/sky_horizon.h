@@ -45,8 +45,9 @@ typedef struct SkyHorizonLight {
 void sky_horizon_light(SkyHorizonLight *out, const SkyHorizons *horizons, const Air *air,
                        const double level_w_m2[AIR_BAND_COUNT]);
 /* Multiplies factors [AIR_BAND_COUNT][hits_capacity] on the light that the tilt alone gives, for hits on ground and
- * scenery, in these bands. */
-void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *horizons, const SkyHorizonLight *light,
-                      unsigned air_bands, const Hits *hits);
+ * scenery, in these bands; below (hemisphere_below), by what of the ground before a wall its own shadow leaves: returns
+ * whether any is less than 1. */
+bool sky_horizon_open(float (*factor)[hits_capacity], float (*below)[hits_capacity], const SkyHorizons *horizons,
+                      const SkyHorizonLight *light, unsigned air_bands, const Hits *hits);
 
 #endif

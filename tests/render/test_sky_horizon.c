@@ -139,7 +139,7 @@ static void light_on_ground(void **state)
 {
     (void)state;
     static Hits           hits;
-    static float          factor[AIR_BAND_COUNT][hits_capacity];
+    static float          factor[AIR_BAND_COUNT][hits_capacity], below[AIR_BAND_COUNT][hits_capacity];
     const SkyHorizonLight light = {.sky = {100, 100, 100, 100, 100, 100, 100}, .level = {50}, .wall = {40, 0, 100}};
     hits.count = 2;
     for (int i = 0; i < 2; i++) {
@@ -148,7 +148,7 @@ static void light_on_ground(void **state)
         hits.n_enu[0][i] = hits.n_enu[1][i] = 0, hits.n_enu[2][i] = 1;
         for (int b = 0; b < AIR_BAND_COUNT; b++) factor[b][i] = 1;
     }
-    sky_horizon_open(factor, stage.horizons, &light, 7, &hits);
+    CHECK(!sky_horizon_open(factor, below, stage.horizons, &light, 7, &hits)); /* without sun nothing is in shadow */
     const double open = share(9, 0, 0, 0, 1);
     CHECK(open > 0.6 && open < 0.8);
     CHECK_NEAR((double)factor[0][0], open + (1 - open) * 0.4, 1e-5);
