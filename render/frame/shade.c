@@ -316,8 +316,12 @@ static void open_horizons(Shader *shader, const ShadeScene *scene, const Samples
         if (s->channels >> b & 1)
             for (int i = 0; i < s->hits.count; i++) open->factor[b][i] = 1;
     if (!shader->any_open) open->any_below = false;
+    for (int b = 0; b < AIR_BAND_COUNT && !open->any_below; b++)
+        if (s->channels >> b & 1)
+            for (int i = 0; i < s->hits.count; i++) open->below[b][i] = 1;
     shader->any_open = true;
-    sky_horizon_open(open->factor, scene->horizons, &scene->horizon_light, s->channels, &s->hits);
+    open->any_below |=
+        sky_horizon_open(open->factor, open->below, scene->horizons, &scene->horizon_light, s->channels, &s->hits);
 }
 
 static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)

@@ -73,7 +73,9 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
         } else {
             const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
             double       diffuse, lobe_rho;
-            material_split(&diffuse, &lobe_rho, rho, m->gloss, m->roughness, n_eye);
+            const bool   pane = material_is_pane(m);
+            if (pane) diffuse = 0, lobe_rho = material_pane(rho, m->roughness, n_eye);
+            else material_split(&diffuse, &lobe_rho, rho, m->gloss, m->roughness, n_eye);
             radiance = diffuse * irradiance_w_m2 / pi_rad;
 
             double mirror_enu[3];
@@ -92,7 +94,9 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
                 if (lobe > 0) {
                     /* at the facet: half the angle between eye and sun */
                     const double cosine = sqrt(fmax(0.5 * (1 + v3_dot(eye_enu, sun_d_enu)), 0));
-                    radiance += material_fresnel(rho * m->gloss, m->roughness, cosine) * lobe * sun_w_m2 * lit;
+                    const double mirrors = pane ? material_pane(rho, m->roughness, cosine)
+                                                : material_fresnel(rho * m->gloss, m->roughness, cosine);
+                    radiance += mirrors * lobe * sun_w_m2 * lit;
                 }
             }
         }

@@ -3,7 +3,8 @@
 
 #include "pitviper_simd.h"
 
-static const double before_cells = 1.2;
+/* behind_m: a place may be so far behind the nearest wall's plane, as below eaves, and is before it. */
+static const double before_cells = 1.2, behind_m = 0.6, least_away_m = 0.02;
 
 static const HorizonCell *cell_at(const SkyHorizons *h, int i, int j)
 {
@@ -37,20 +38,50 @@ typedef struct Seen {
 static const float sine[8] = {0, 0.70710678f, 1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f};
 static const float cosine[8] = {1, 0.70710678f, 0, -0.70710678f, -1, -0.70710678f, 0, 0.70710678f};
 
-/* Whether nothing about a cell hides any sky. */
+static bool is_level(const float n[3]) { return n[2] > 0.5f; }
+
+/* A place's surface, along sectors, and the sun. */
+typedef struct Facet {
+    F32x8  aside, behind, up, all; /* normal along them and against, and up; light of an open sky */
+    F32x8  before_m;               /* how far the cells are before the place along them */
+    F32x8  sunny, deep; /* of walls there that face us: cosine of the sun, and depth of their shadow in their heights */
+    bool   level;       /* rather than upright */
+    double sun_enu[2], per_sun_up;
+    const double (*facing_enu)[2];
+} Facet;
+
+/* What hides the sky of a place, by sectors: light that it takes, of that what walls in the sun show (times its cosine)
+ * and what their own shadow shades; and how high what stands close is, m. */
+typedef struct Hidden {
+    F32x8 light, lit, shaded, close_high;
+} Hidden;
+
+/* Whether nothing about a cell hides any sky; one with a wall near hides some. */
 static inline bool is_open(const HorizonCell *cell)
 {
     uint64_t slopes;
     _Static_assert(sizeof slopes == sizeof cell->slope, "eight octets");
     memcpy(&slopes, cell->slope, sizeof slopes);
-    return slopes == 0;
+    return slopes == 0 && cell->wall_rise == 0;
 }
 
-/* The four cells about a place, and its share of each. */
+/* The four cells about a place, its share of each, and how far east and north of each it is, which the nearest walls
+ * know. */
 typedef struct Four {
     const HorizonCell *cell[4];
     float              weight[4];
+    double             off_m[4][2];
 } Four;
+
+/* Cells that something covers say nothing where others do. */
+static void leave_covered(Four *f)
+{
+    float left = 0;
+    for (int k = 0; k < 4; k++)
+        if (!f->cell[k] || !f->cell[k]->covered) left += f->weight[k];
+    if (!(left > 0.02f) || left == 1) return;
+    for (int k = 0; k < 4; k++) f->weight[k] = !f->cell[k] || !f->cell[k]->covered ? f->weight[k] / left : 0;
+}
 
 /* A place somewhat before its surface, so that its cell is not that of what it is on; false: away from buildings. */
 static inline bool find_cells(Four *out, const SkyHorizons *h, double x_m, double y_m, const float n[3])
@@ -64,92 +95,228 @@ static inline bool find_cells(Four *out, const SkyHorizons *h, double x_m, doubl
     out->cell[2] = cell_at(h, i, j + 1), out->cell[3] = cell_at(h, i + 1, j + 1);
     out->weight[0] = (1 - u) * (1 - v), out->weight[1] = u * (1 - v);
     out->weight[2] = (1 - u) * v, out->weight[3] = u * v;
-    return out->cell[0] || out->cell[1] || out->cell[2] || out->cell[3];
+    if (!out->cell[0] && !out->cell[1] && !out->cell[2] && !out->cell[3]) return false;
+    for (int k = 0; k < 4; k++) {
+        out->off_m[k][0] = x_m - h->x0_m - (i + (k & 1)) * h->cell_m;
+        out->off_m[k][1] = y_m - h->y0_m - (j + (k >> 1)) * h->cell_m;
+    }
+    leave_covered(out);
+    return true;
 }
 
 /* The horizon of a place, of sectors. */
 typedef struct Horizon {
-    F32x8 sine2, high;  /* squared sine of its elevation; what makes it, above the ground, by what it hides, m */
-    F32x8 close_high;   /* the same of what stands close, without weights, m */
-    float ground_m, of; /* sums of the cells' grounds and of their shares */
+    F32x8 sine2, high; /* squared sine of its elevation; what makes it, above the ground, by what it hides, m */
+    F32x8 close_high;  /* the same of what stands close, without weights, m */
+    float ground_m;
 } Horizon;
 
-/* Between the cells sin^2 is linear, as is the light that level ground loses. False: nothing hides any sky. */
-static inline bool horizon_between(Horizon *out, const Four *four, bool close)
+/* Between the cells that have no wall near sin^2 is linear, as is the light that level ground loses. of: their share. */
+static inline void horizon_between(Horizon *out, const Four *four, float of, bool close)
 {
     F32x8 sine2 = f32x8_set(0), high = sine2, close_high = sine2;
-    float ground_m = 0, of = 0;
-    bool  some = false;
+    float ground_m = 0, known = 0;
     for (int k = 0; k < 4; k++) {
         const HorizonCell *cell = four->cell[k];
-        if (!cell) continue;
-        const F32x8 weight = _mm256_set1_ps(four->weight[k]);
+        if (!cell || cell->wall_rise > 0) continue;
+        const F32x8 weight = _mm256_set1_ps(four->weight[k] / of);
         const F32x8 s = f32x8_of_ints(i32x8_of_bytes(cell->slope)), up = f32x8_of_ints(i32x8_of_bytes(cell->height));
         const F32x8 share = weight * (s * s);
         sine2 = sine2 + share, high = f32x8_fma(share, up, high);
         if (close) close_high = close_high + f32x8_and(weight * up, f32x8_greater(s, f32x8_set(0.24 * 255)));
-        ground_m = fmaf(four->weight[k], cell->ground_m, ground_m), of += four->weight[k];
-        some = some || !is_open(cell);
+        ground_m = fmaf(four->weight[k], cell->ground_m, ground_m), known += four->weight[k];
     }
-    out->high = f32x8_set(horizon_height_step_m * (1 - 1e-6)) * high /
-                f32x8_max(sine2, f32x8_set(1e-6)); /* no more
-                                                    * than theirs, if rounded */
+    /* no more than theirs, if rounded */
+    out->high = f32x8_set(horizon_height_step_m * (1 - 1e-6)) * high / f32x8_max(sine2, f32x8_set(1e-6));
     out->sine2 = f32x8_min(sine2 * f32x8_set(1 / (255.0 * 255)), f32x8_set(1 - 1e-6));
     out->close_high = f32x8_set(horizon_height_step_m) * close_high;
-    out->ground_m = ground_m, out->of = of;
-    return some;
+    out->ground_m = known > 0 ? ground_m / known : 0;
 }
 
-/* The normal along sectors and up, how far the cells are before the place along them, m, and light of an open sky. */
-typedef struct Facet {
-    F32x8 aside, before_m, up, all;
-} Facet;
-
-/* Light that the horizon hides of each sector, of a sky that is as bright everywhere, for a place this high above the
- * ground. Cells are before the place: what makes the horizon is as much farther from it.
- *
- * The tangent of the horizon, s / c / (1 + s / c before / high) (1 - over / high) with sine and cosine s and c, is
- * rise / run with nothing divided yet; the light above it is the integrals over elevation h .. pi/2 of cos^2 and of
- * sin cos. */
-static inline F32x8 hidden_by(const Horizon *h, float over_m, const Facet *f)
+static inline void horizon_of(Horizon *out, const HorizonCell *cell)
 {
-    const F32x8 one = f32x8_set(1), none = f32x8_set(0), s = f32x8_sqrt(h->sine2), c = f32x8_sqrt(one - h->sine2);
-    const F32x8 rise = s * f32x8_max(h->high - _mm256_set1_ps(over_m > 0 ? over_m : 0), none);
-    const F32x8 run = f32x8_max(f32x8_fma(s, f->before_m, c * h->high), f32x8_set(1e-6));
+    const F32x8 code = f32x8_of_ints(i32x8_of_bytes(cell->slope)) * f32x8_set(1.0 / 255);
+    out->sine2 = f32x8_min(code * code, f32x8_set(1 - 1e-6));
+    out->high = f32x8_of_ints(i32x8_of_bytes(cell->height)) * f32x8_set(horizon_height_step_m);
+    out->close_high = f32x8_and(out->high, f32x8_greater(code, f32x8_set(0.24)));
+    out->ground_m = cell->ground_m;
+}
+
+/* Light of a sky that is as bright everywhere, on a plane, of the part of a sector above a horizon of tangent rise /
+ * run: the integrals over elevation h .. pi/2 of cos^2 and of sin cos. */
+static inline F32x8 above(F32x8 rise, F32x8 run, const Facet *f)
+{
+    const F32x8 one = f32x8_set(1);
     const F32x8 steep = f32x8_less(run, rise), t = f32x8_min(rise, run) / f32x8_max(rise, run);
     const F32x8 arc = t * (f32x8_set(0.7853982) + f32x8_set(0.273) * (one - t)); /* arc tangent, within 0.004 */
     const F32x8 angle = f32x8_select(steep, arc, f32x8_set(0.5 * pi_rad) - arc); /* of the sky above */
     const F32x8 per = rise / f32x8_fma(rise, rise, run * run);
-    const F32x8 above = f32x8_fma(f->aside, angle - run * per, f->up * (one - rise * per));
-    return f32x8_max(f->all - f32x8_max(above, none), none);
+    return f32x8_max(f32x8_fma(f->aside, angle - run * per, f->up * (one - rise * per)), f32x8_set(0));
+}
+
+/* Of the ground before a wall, as it shines on level ground at r of its heights: what its shadow covers of what is seen
+ * by the half of it, of its light, that is the lower, z of its heights up: cos h of that is the mean of 1 and cos of
+ * its top's. deep: of the shadow, in its heights. */
+static F32x8 shade_before(F32x8 tangent, F32x8 deep)
+{
+    const F32x8 one = f32x8_set(1), half = f32x8_set(0.5);
+    const F32x8 t = f32x8_max(tangent, f32x8_set(0.05)); /* farther off it stays, and 1 - cos h is rounded away */
+    const F32x8 middle = f32x8_fma(half, one / f32x8_sqrt(f32x8_fma(t, t, one)), half);
+    const F32x8 z = f32x8_sqrt(one - middle * middle) / (middle * t);
+    return one - z / f32x8_sqrt(f32x8_fma(deep, deep, z * z));
+}
+
+/* On a place that is upright the mean over the wall's height. */
+static F32x8 shade_of(const Facet *f, F32x8 tangent, F32x8 deep)
+{
+    const F32x8 one = f32x8_set(1);
+    if (f->level) return shade_before(tangent, deep);
+    return one + deep - f32x8_sqrt(f32x8_fma(deep, deep, one));
+}
+
+/* What a horizon hides of a place so high above the ground. Cells are before the place: what makes the horizon is as
+ * much farther from it. With sine and cosine s and c its tangent is s / c / (1 + s / c before / high) (1 - over / high),
+ * rise / run with nothing divided yet. */
+static inline void hidden_by(Hidden *out, const Horizon *h, float over_m, const Facet *f, bool lit)
+{
+    const F32x8 one = f32x8_set(1), none = f32x8_set(0), s = f32x8_sqrt(h->sine2), c = f32x8_sqrt(one - h->sine2);
+    const F32x8 rise = s * f32x8_max(h->high - _mm256_set1_ps(over_m > 0 ? over_m : 0), none);
+    const F32x8 run = f32x8_max(f32x8_fma(s, f->before_m, c * h->high), f32x8_set(1e-6));
+    out->light = f32x8_max(f->all - above(rise, run, f), none);
+    out->close_high = h->close_high;
+    out->lit = out->shaded = none;
+    if (!lit) return;
+    out->lit = out->light * f->sunny;
+    out->shaded = out->light * shade_of(f, rise / run, f->deep);
+}
+
+/* A cell's nearest wall from a place: what of each sector it fills, and the tangent of its edge there. */
+typedef struct WallSeen {
+    F32x8 filled, tangent;
+    float lit, deep; /* cosine of the sun on it, depth of its shadow in its heights */
+} WallSeen;
+
+/* Arc tangent of y / x, x > 0, in sectors; within 0.005. */
+static float sectors_of(float y, float x)
+{
+    const float a = fabsf(y), low = a < x ? a / x : x / a, arc = low * (1 + 0.3476f * (1 - low));
+    return copysignf(a < x ? arc : 2 - arc, y);
+}
+
+/* sin^2 of the elevation of a wall's edge so many sectors aside. edge: its tangent square before the place. */
+static F32x8 sine2_to(F32x8 sectors, F32x8 edge)
+{
+    const F32x8 angle = sectors * f32x8_set(0.25 * pi_rad), angle2 = angle * angle;
+    const F32x8 slant = f32x8_fma(angle2, f32x8_fma(angle2, f32x8_set(0.03705), f32x8_set(-0.4967)), f32x8_set(1));
+    const F32x8 tangent = f32x8_clamp(edge * slant, 0, 1e3), tangent2 = tangent * tangent;
+    return tangent2 / (f32x8_set(1) + tangent2);
+}
+
+static void wall_seen(WallSeen *out, const HorizonCell *cell, float z_m, const Facet *f, const double off_m[2])
+{
+    static const float number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const F32x8        half = f32x8_set(0.5), none = f32x8_set(0), one = f32x8_set(1);
+    const double      *n = f->facing_enu[cell->wall_facing], sun = n[0] * f->sun_enu[0] + n[1] * f->sun_enu[1];
+    const double       there_m = cell->wall_away * horizon_away_step_m + n[0] * off_m[0] + n[1] * off_m[1];
+    const double       over_m = fmax((double)(z_m - cell->ground_m), 0);
+    const double       rise_m = cell->wall_rise * horizon_wall_step_m - over_m;
+    *out = (WallSeen){none, none, (float)fmax(sun, 0), (float)(fmax(-sun, 0) * f->per_sun_up)};
+    if (!(rise_m > 0 && there_m > -behind_m)) return;
+    const float  away_m = (float)fmax(there_m, least_away_m), right_m = (float)(n[0] * off_m[1] - n[1] * off_m[0]);
+    const double left = cell->wall_left == 255 ? 1e3 : cell->wall_left * horizon_wall_step_m;
+    const double right = cell->wall_right == 255 ? 1e3 : cell->wall_right * horizon_wall_step_m;
+    const F32x8  first = _mm256_set1_ps(sectors_of(-(float)left - right_m, away_m));
+    const F32x8  last = _mm256_set1_ps(sectors_of((float)right - right_m, away_m));
+    /* sectors' middles from where the wall is square before the place, -4 .. 4 */
+    F32x8 at = f32x8_load(number) - f32x8_set(cell->wall_facing / 32.0 + 4);
+    at = at - f32x8_set(8) * f32x8_floor(f32x8_fma(at, f32x8_set(0.125), half));
+    const F32x8 from = f32x8_max(at - half, first), to = f32x8_min(at + half, last);
+    out->filled = f32x8_clamp(to - from, 0, 1);
+    const F32x8 mid = half * (from + to), aside = f32x8_set(0.28867513) * out->filled,
+                edge = f32x8_set(rise_m / (double)away_m);
+    const F32x8 sine2 = half * (sine2_to(mid - aside, edge) + sine2_to(mid + aside, edge)); /* Gauss's two places */
+    out->tangent = f32x8_sqrt(sine2 / (one - sine2));
+}
+
+/* What a cell with a wall near hides: the wall, and its horizon where that is not. */
+static void hidden_by_wall(Hidden *out, const HorizonCell *cell, float z_m, const Facet *f, const double off_m[2],
+                           bool lit)
+{
+    Horizon  horizon;
+    WallSeen wall;
+    horizon_of(&horizon, cell);
+    hidden_by(out, &horizon, z_m - cell->ground_m, f, lit);
+    wall_seen(&wall, cell, z_m, f, off_m);
+    const F32x8 fills = f32x8_max(f->all - above(wall.tangent, f32x8_set(1), f), f32x8_set(0));
+    out->light = f32x8_lerp(out->light, fills, wall.filled);
+    out->close_high = f32x8_select(f32x8_greater(wall.filled, f32x8_set(0.5)), horizon.high, out->close_high);
+    if (!lit) return;
+    out->lit = f32x8_lerp(out->lit, fills * _mm256_set1_ps(wall.lit), wall.filled);
+    out->shaded = f32x8_lerp(out->shaded, fills * shade_of(f, wall.tangent, _mm256_set1_ps(wall.deep)), wall.filled);
+}
+
+static inline void add(Hidden *to, const Hidden *from, float weight)
+{
+    const F32x8 w = _mm256_set1_ps(weight);
+    to->light = f32x8_fma(w, from->light, to->light), to->lit = f32x8_fma(w, from->lit, to->lit);
+    to->shaded = f32x8_fma(w, from->shaded, to->shaded);
+    to->close_high = f32x8_fma(w, from->close_high, to->close_high);
+}
+
+static inline void facet(Facet *f, const SkyHorizons *h, const float n[3], const SkyHorizonLight *light)
+{
+    const F32x8 east = f32x8_load(sine), north = f32x8_load(cosine), none = f32x8_set(0);
+    f->aside = f32x8_fma(_mm256_set1_ps(n[0]), east, _mm256_set1_ps(n[1]) * north);
+    f->behind = f32x8_max(none - f->aside, none);
+    f->before_m = f32x8_max(f->aside, none) * f32x8_set(before_cells * h->cell_m);
+    f->up = _mm256_set1_ps(n[2]);
+    f->all = f32x8_max(f32x8_fma(f->aside, f32x8_set(0.5 * pi_rad), f->up), none);
+    f->sunny = f->deep = none;
+    f->level = is_level(n);
+    f->sun_enu[0] = f->sun_enu[1] = f->per_sun_up = 0;
+    f->facing_enu = (const double(*)[2])h->facing_enu;
+    if (!light) return;
+    const F32x8 sun_east = _mm256_set1_ps(light->sun_enu[0]), sun_north = _mm256_set1_ps(light->sun_enu[1]);
+    const F32x8 along = f32x8_fma(sun_east, east, sun_north * north);
+    for (int c = 0; c < 2; c++) f->sun_enu[c] = (double)light->sun_enu[c];
+    f->per_sun_up = light->sun_enu[2] > 0.02f ? 1 / (double)light->sun_enu[2] : 0;
+    f->sunny = f32x8_max(none - along, none);
+    f->deep = f32x8_max(along, none) * f32x8_set(f->per_sun_up);
 }
 
 /* light: NULL: the sun is not asked for. own: what is behind the place is. */
 static inline Seen seen_from(const Four *four, const SkyHorizons *h, float z_m, const float n[3],
                              const SkyHorizonLight *light, bool own)
 {
-    const F32x8 east = f32x8_load(sine), north = f32x8_load(cosine), none = f32x8_set(0);
-    F32x8       sunny = none, shaded = none, behind = none;
-    float       sum[4], more[4];
-    Seen        seen = {.share = 1};
-    Facet       f;
-    Horizon     horizon;
-    if (!horizon_between(&horizon, four, own)) return seen;
-    f.aside = f32x8_fma(_mm256_set1_ps(n[0]), east, _mm256_set1_ps(n[1]) * north);
-    f.before_m = f32x8_max(f.aside, none) * f32x8_set(before_cells * h->cell_m);
-    f.up = _mm256_set1_ps(n[2]);
-    f.all = f32x8_max(f32x8_fma(f.aside, f32x8_set(0.5 * pi_rad), f.up), none);
-    const F32x8 hidden = hidden_by(&horizon, z_m - horizon.ground_m / horizon.of, &f);
-    if (light) {
-        const F32x8 sun_east = _mm256_set1_ps(light->sun_enu[0]), sun_north = _mm256_set1_ps(light->sun_enu[1]);
-        sunny = hidden * f32x8_max(none - f32x8_fma(sun_east, east, sun_north * north), none);
-        shaded = hidden * f32x8_load(light->shaded);
+    Seen   seen = {.share = 1};
+    Hidden all = {f32x8_set(0), f32x8_set(0), f32x8_set(0), f32x8_set(0)}, one;
+    Facet  f;
+    float  walled = 0, sum[4], more[4];
+    bool   hides = false;
+    for (int k = 0; k < 4; k++) {
+        if (!four->cell[k]) continue;
+        hides = hides || !is_open(four->cell[k]);
+        if (four->cell[k]->wall_rise > 0) walled += four->weight[k];
     }
-    if (own) behind = f32x8_max(none - f.aside, none);
-    _mm_storeu_ps(sum, sums_of_four(hidden, sunny, shaded, f.all));
+    if (!hides) return seen;
+    facet(&f, h, n, light);
+    if (walled < 1 - 1e-5f) {
+        Horizon horizon;
+        horizon_between(&horizon, four, 1 - walled, own);
+        hidden_by(&one, &horizon, z_m - horizon.ground_m, &f, light != NULL);
+        add(&all, &one, 1 - walled);
+    }
+    for (int k = 0; k < 4 && walled > 0; k++) {
+        const HorizonCell *cell = four->cell[k];
+        if (!cell || cell->wall_rise == 0 || !(four->weight[k] > 0)) continue;
+        hidden_by_wall(&one, cell, z_m, &f, four->off_m[k], light != NULL);
+        add(&all, &one, four->weight[k]);
+    }
+    _mm_storeu_ps(sum, sums_of_four(all.light, all.lit, all.shaded, f.all));
     if (sum[3] > 1e-4f) seen.share = 1 - sum[0] / sum[3], seen.lit = sum[1] / sum[3], seen.shaded = sum[2] / sum[3];
     if (own) {
-        _mm_storeu_ps(more, sums_of_four(behind, behind * horizon.close_high, none, none));
+        const F32x8 none = f32x8_set(0);
+        _mm_storeu_ps(more, sums_of_four(f.behind, f.behind * all.close_high, none, none));
         if (more[0] > 0.1f && sum[3] > 1e-4f) seen.own_high_m = more[1] / more[0];
     }
     return seen;
@@ -178,12 +345,7 @@ void sky_horizon_light(SkyHorizonLight *out, const SkyHorizons *h, const Air *ai
         out->sunlit_wall[b] = (float)(b >= AIR_MWIR ? 0 : h->wall_rho[b] * sun);
         out->level_sun[b] = (float)(sun * up > 0 ? sun * up / (sun * up + sky) : 0);
         out->wall_by_sun[b] = b >= AIR_MWIR ? 0 : (float)(0.5 * h->wall_rho[b] * level_w_m2[b]) * out->level_sun[b];
-    }
-    /* A wall without ends that is turned away from the sun: its shadow is away / up times its height deep, and fills
-     * of the ground that a place on it sees 1 - z / sqrt(z^2 + deep^2), on the mean over the wall this. */
-    for (int s = 0; s < sky_horizon_sectors && up > 0.02; s++) {
-        const float deep = fmaxf(out->sun_enu[0] * sine[s] + out->sun_enu[1] * cosine[s], 0) / out->sun_enu[2];
-        out->shaded[s] = 1 + deep - sqrtf(1 + deep * deep);
+        out->wall_by_sky[b] = b >= AIR_MWIR ? 0 : (float)(0.5 * h->wall_rho[b] * level_w_m2[b]) - out->wall_by_sun[b];
     }
 }
 
@@ -196,12 +358,13 @@ static float own_shade(const SkyHorizonLight *light, const Seen *seen, const flo
     return 1 - z_m / sqrtf(z_m * z_m + deep_m * deep_m);
 }
 
-void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, const SkyHorizonLight *light,
-                      unsigned air_bands, const Hits *hits)
+bool sky_horizon_open(float (*factor)[hits_capacity], float (*below)[hits_capacity], const SkyHorizons *h,
+                      const SkyHorizonLight *light, unsigned air_bands, const Hits *hits)
 {
+    bool        any = false;
     const F32x8 sky = f32x8_load(light->sky), level = f32x8_load(light->level), wall = f32x8_load(light->wall);
     const F32x8 sunlit = f32x8_load(light->sunlit_wall), level_sun = f32x8_load(light->level_sun);
-    const F32x8 by_sun = f32x8_load(light->wall_by_sun);
+    const F32x8 by_sun = f32x8_load(light->wall_by_sun), by_sky = f32x8_load(light->wall_by_sky);
     for (int i = 0; i < hits->count; i++) {
         if (hits->kind[i] != hit_ground && hits->kind[i] != hit_scenery) continue;
         const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
@@ -215,11 +378,17 @@ void sky_horizon_open(float (*factor)[hits_capacity], const SkyHorizons *h, cons
         if (seen.share == 1 && shade == 0) continue;
         const F32x8 up = _mm256_set1_ps(0.5f * (1 + n[2])), down = _mm256_set1_ps(0.5f * (1 - n[2])) * level;
         const F32x8 open = f32x8_max(sky * up + down, f32x8_set(1e-20));
-        const F32x8 walls = _mm256_set1_ps(1 - seen.share) * wall + _mm256_set1_ps(seen.lit) * sunlit -
-                            _mm256_set1_ps(seen.shaded) * by_sun;
-        const F32x8 below = down * (f32x8_set(1) - _mm256_set1_ps(shade) * level_sun);
-        f32x8_store(of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + below) / open);
+        /* what lights the foot of a wall is the ground before it, which has as little of the sky as this place */
+        const float hidden = 1 - seen.share, before = is_level(n) ? hidden * hidden : 0;
+        const F32x8 walls = _mm256_set1_ps(hidden) * wall + _mm256_set1_ps(seen.lit) * sunlit -
+                            _mm256_set1_ps(seen.shaded) * by_sun - _mm256_set1_ps(before) * by_sky;
+        const F32x8 left = f32x8_set(1) - _mm256_set1_ps(shade) * level_sun;
+        float       sunny[8];
+        f32x8_store(of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + down * left) / open);
+        f32x8_store(sunny, left);
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            if (air_bands >> b & 1) factor[b][i] *= of[b];
+            if (air_bands >> b & 1) factor[b][i] *= of[b], below[b][i] *= sunny[b];
+        any |= shade > 0;
     }
+    return any;
 }

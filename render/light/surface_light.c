@@ -5,7 +5,15 @@
 #include "render/light/optical.h"
 #include "pitviper_simd.h"
 
-enum GlossValue { gloss_share, gloss_roughness, gloss_per_roughness, gloss_smooth2, gloss_slope2, gloss_values };
+enum GlossValue {
+    gloss_share,
+    gloss_roughness,
+    gloss_per_roughness,
+    gloss_smooth2,
+    gloss_slope2,
+    gloss_pane,
+    gloss_values
+};
 
 static const double water_index2 = 1.7673876858061457; /* of a reflectance of 0.02, below which most ground is */
 
@@ -27,6 +35,7 @@ static void fill_row(float rho[surface_light_bands], float gloss[surface_light_b
     gloss[gloss_per_roughness] = (float)(1 / fmax(roughness, 0.01));
     gloss[gloss_smooth2] = (float)(smooth * smooth);
     gloss[gloss_slope2] = (float)material_slope2(roughness);
+    gloss[gloss_pane] = material_is_pane(m);
 }
 
 Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials *materials, Arena *arena)
@@ -186,6 +195,15 @@ static inline F32x8 fresnel(F32x8 gloss_rho, F32x8 smooth2, F32x8 cosine, F32x8 
     return f32x8_and(f32x8_select(f32x8_less(gloss_rho, one()), all, one()), f32x8_greater(gloss_rho, zero()));
 }
 
+/* material_pane. */
+static inline F32x8 pane(F32x8 rho, F32x8 smooth2, F32x8 cosine)
+{
+    const F32x8 root = f32x8_sqrt(rho / (f32x8_set(2) - rho)), index2 = square((one() + root) / (one() - root));
+    const F32x8 inside = f32x8_sqrt(index2 - one() + cosine * cosine), steep = index2 * cosine;
+    const F32x8 s = square((cosine - inside) / (cosine + inside)), p = square((steep - inside) / (steep + inside));
+    return f32x8_fma(smooth2, s / (one() + s) + p / (one() + p) - rho, rho);
+}
+
 static inline F32x8 smith(F32x8 per_slope, F32x8 cosine)
 {
     const F32x8 sine2 = one() - cosine * cosine;
@@ -278,6 +296,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     material_rows(rho, light->rho, material, same);
     material_rows(of, light->gloss, material, same);
     const bool glossy = f32x8_bits(f32x8_greater(of[gloss_share], zero())) != 0;
+    const bool panes = f32x8_bits(f32x8_greater(of[gloss_pane], zero())) != 0;
 
     const Three sun = {f32x8_set(air->light.sun_d_enu[0]), f32x8_set(air->light.sun_d_enu[1]),
                        f32x8_set(air->light.sun_d_enu[2])};
@@ -345,9 +364,15 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
             mirrors = fresnel(gloss_rho, of[gloss_smooth2], f32x8_min(n_eye, one()), water_eye);
             diffuse = f32x8_and((all_rho - gloss_rho) * (one() - mirrors) / (one() - gloss_rho),
                                 f32x8_less(gloss_rho, one()));
+            const bool shines = f32x8_bits(f32x8_greater(glint, zero())) != 0;
+            if (shines) flash = fresnel(gloss_rho, of[gloss_smooth2], f32x8_min(half, one()), water_half) * glint;
+            if (panes && band < AIR_MWIR) {
+                const F32x8 is = f32x8_greater(of[gloss_pane], zero());
+                mirrors = f32x8_select(is, pane(gloss_rho, of[gloss_smooth2], f32x8_min(n_eye, one())), mirrors);
+                if (shines)
+                    flash = f32x8_select(is, pane(gloss_rho, of[gloss_smooth2], f32x8_min(half, one())) * glint, flash);
+            }
             mirrored = mirrors * f32x8_lerp(mirror_level, mirror_sky * sky[band], sees_sky);
-            if (f32x8_bits(f32x8_greater(glint, zero())))
-                flash = fresnel(gloss_rho, of[gloss_smooth2], f32x8_min(half, one()), water_half) * glint;
         }
         F32x8 reflected = f32x8_fma(diffuse * per_pi, around, mirrored);
         F32x8 sunlit = f32x8_fma(diffuse * per_pi, n_sun, flash) * (sun_w_m2 * arrives);

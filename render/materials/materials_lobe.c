@@ -42,6 +42,15 @@ double material_fresnel(double gloss_rho, double roughness_rad, double cosine)
     return gloss_rho + cover * smooth * smooth * (reflected - normal);
 }
 
+double material_pane(double rho, double roughness_rad, double cosine)
+{
+    if (!(rho > 0)) return 0;
+    const double c = clamp(cosine, 0, 1), index2 = index_squared(rho / (2 - rho)), inside = sqrt(index2 - 1 + c * c);
+    const double across = (c - inside) / (c + inside), along = (index2 * c - inside) / (index2 * c + inside);
+    const double s = across * across, p = along * along, smooth = 1 - fmin(roughness_rad, 1);
+    return rho + smooth * smooth * (s / (1 + s) + p / (1 + p) - rho);
+}
+
 void material_split(double *diffuse, double *lobe, double rho, double gloss, double roughness_rad, double cosine)
 {
     const double gloss_rho = rho * gloss;

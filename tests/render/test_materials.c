@@ -218,6 +218,20 @@ static void glass_is_a_dielectric(void **state)
     CHECK_NEAR(material_fresnel(0.9, 0, 0), 1, 1e-12); /* and metal mirrors at grazing */
 }
 
+/* A pane of the same glass, light going back and forth between its sides, each polarisation for itself. */
+static void a_pane_has_two_sides(void **state)
+{
+    (void)state;
+    const double rho = 2 * 0.04 / 1.04;
+    CHECK_NEAR(material_pane(rho, 0, 1), rho, 1e-12);
+    const double s = 0.176568, p = 0.0018018; /* of one side at 60 degrees */
+    CHECK_NEAR(material_pane(rho, 0, 0.5), s / (1 + s) + p / (1 + p), 2e-5);
+    const double brewster_rad = atan(1.5), across = (1 - 1.5 * 1.5) / (1 + 1.5 * 1.5), one = across * across;
+    CHECK_NEAR(material_pane(rho, 0, cos(brewster_rad)), one / (1 + one), 1e-12);
+    CHECK_NEAR(material_pane(rho, 0, 0), 1, 1e-12);
+    CHECK(material_pane(0, 0, 0.5) == 0);
+}
+
 /* Bare metal and glass give nothing back but a mirror's light. */
 static void metal_and_glass_have_no_diffuse_share(void **state)
 {
@@ -383,6 +397,7 @@ int main(void)
         cmocka_unit_test(the_lobe_is_reciprocal_and_peaks_at_the_mirror),
         cmocka_unit_test(reflectance_stays_between_its_ends),
         cmocka_unit_test(glass_is_a_dielectric),
+        cmocka_unit_test(a_pane_has_two_sides),
         cmocka_unit_test(metal_and_glass_have_no_diffuse_share),
         cmocka_unit_test(leaves_are_as_leaves_are),
         cmocka_unit_test_setup_teardown(own_rows_move_no_other, listen, stop_listening),

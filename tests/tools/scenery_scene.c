@@ -1,6 +1,9 @@
-/* tests/tools/scenery_scene.c: scenery_scene FOLDER: a gabled house on level ground under one sun and an even sky, as
- * Pitviper shows it, for test_scenery_judge.sh: PART.obj (ENU), scene.txt, and radiance as floats [3][height][width]:
- * direct (the sun alone), quick (the default), sampled (sky and surroundings over the hemisphere). */
+/* tests/tools/scenery_scene.c: a gabled house on level ground under one sun and an even sky, as Pitviper shows it:
+ * PART.obj (ENU), scene.txt, and radiance as floats [3][height][width].
+ *     scenery_scene FOLDER        for test_scenery_judge.sh: direct (the sun alone), quick (the default), sampled (sky
+ *                                 and surroundings over the hemisphere)
+ *     scenery_scene FOLDER panes  for test_window_judge.sh: its windows are smooth panes, and the sun is low: of each
+ *                                 view VIEW.txt, VIEW.bin and VIEW_sampled.bin */
 #include "tests/scenes/stress_world.h"
 #include "tests/scenes/town.h"
 
@@ -9,9 +12,22 @@
 #include <stdlib.h>
 
 enum { width = 168, height = 112 };
-static const double focal_px = 190, sun_w_m2 = 300, sky_w_m2_sr = 40, eye_enu[3] = {-24, -26, 13},
-                    at_enu[3] = {-1, 1, 2.5};
+static const double sun_w_m2 = 300, sky_w_m2_sr = 40;
+
+typedef struct Look {
+    const char *name;
+    double      focal_px, eye_enu[3], at_enu[3];
+} Look;
+static const Look house = {"scene", 190, {-24, -26, 13}, {-1, 1, 2.5}};
+/* windows' middles are 1.35 m up on the sides of x -6.6 and 0.5. Where the sun is mirrored to the eye; the sky near
+ * square and at grazing angles, on the sunny side and in shade; ground in the sun, 7 m and 2 m before the wall */
+static const Look window[] = {
+    {"glint", 1000, {3.705, 0.204, 0.56}, {0.505, -2.06, 1.36}}, {"sky", 700, {8, 6, 0.5}, {0.505, 1.93, 1.4}},
+    {"grazing", 700, {1.5, -8, 0.6}, {0.505, -2.06, 1.4}},       {"shade", 700, {-14, -6, 0.5}, {-6.618, -2.06, 1.4}},
+    {"ground", 700, {9, -7, 3}, {0.505, -2.06, 1.35}},           {"foot", 700, {9, -7, 7}, {0.505, -2.06, 1.35}}};
+static const double      high_sun_enu[3] = {0.48, -0.6, 0.64}, low_sun_enu[3] = {0.8, -0.565685424949238, 0.2};
 static const char *const part_name[3] = {"wall", "roof", "window"};
+static const double      pane_rho = 2 * 0.04 / 1.04; /* of both sides of glass of index 1.5 */
 static const float       part_rho[3] = {0.45f, 0.25f, 0.1f}, ground_rho = 0.3f;
 
 static FILE *open_in(const char *folder, const char *name)
@@ -56,36 +72,74 @@ static void set_material(Materials *m, int row, float rho)
     m->material[row].gloss = 0;
 }
 
-static bool draw(StressWorld *w, const char *folder, const char *name, double ground_m, double sky, int sky_samples)
+static bool write_scene(const char *folder, const Look *look, const double sun_enu[3])
 {
-    const double sun_enu[3] = {0.48, -0.6, 0.64};
-    double       d[3], eye[3], even[AIR_BAND_COUNT];
-    for (int b = 0; b < AIR_BAND_COUNT; b++) even[b] = sky;
-    v3_sub(d, at_enu, eye_enu);
-    memcpy(eye, eye_enu, sizeof eye), eye[2] += ground_m;
-    const View    view = stress_view(eye, d, 0, width, height, focal_px);
-    RenderRequest request = stress_request(&view);
-    request.bands = 1u << BAND_OPTICAL, request.optical = OPTICAL_RGB;
-    request.samples = sky_samples > 0 ? 3 : 4, request.edge_samples = 0;
-    request.sky_samples = sky_samples, request.sky_visibility = sky_samples == 0;
-    for (int c = 0; c < optical_channel_count; c++) /* with the sun alone nothing shines from below */
-        w->world.materials.ground_rho[c] = sky > 0 ? ground_rho : 0;
-    air_even(&w->air, sun_enu, sun_w_m2, even, 0, w->world.planck_mwir, w->world.planck_lwir);
-    FILE *file = open_in(folder, "scene.txt");
+    char name[64];
+    snprintf(name, sizeof name, "%s.txt", look->name);
+    FILE *file = open_in(folder, name);
     if (!file) return false;
-    fprintf(file, "size %d %d\nfocal_px %.17g\neye %.17g %.17g %.17g\nat %.17g %.17g %.17g\n", width, height, focal_px,
-            eye_enu[0], eye_enu[1], eye_enu[2], at_enu[0], at_enu[1], at_enu[2]);
+    fprintf(file, "size %d %d\nfocal_px %.17g\neye %.17g %.17g %.17g\nat %.17g %.17g %.17g\n", width, height,
+            look->focal_px, look->eye_enu[0], look->eye_enu[1], look->eye_enu[2], look->at_enu[0], look->at_enu[1],
+            look->at_enu[2]);
     fprintf(file, "sun %.17g %.17g %.17g %.17g\nsky %.17g\nground %.9g\n", sun_enu[0], sun_enu[1], sun_enu[2], sun_w_m2,
             sky_w_m2_sr, (double)ground_rho);
     for (int k = 0; k < 3; k++) fprintf(file, "part %s %.9g\n", part_name[k], (double)part_rho[k]);
-    return fclose(file) == 0 && stress_render(w, &request) && write_planes(folder, name, &w->picture);
+    return fclose(file) == 0;
+}
+
+typedef struct Drawn {
+    const char *name;
+    double      sun_enu[3], sky;
+    int         sky_samples;
+} Drawn;
+
+static bool draw(StressWorld *w, const char *folder, const Look *look, double ground_m, const Drawn *of)
+{
+    double d[3], eye[3], even[AIR_BAND_COUNT];
+    for (int b = 0; b < AIR_BAND_COUNT; b++) even[b] = of->sky;
+    v3_sub(d, look->at_enu, look->eye_enu);
+    memcpy(eye, look->eye_enu, sizeof eye), eye[2] += ground_m;
+    const View    view = stress_view(eye, d, 0, width, height, look->focal_px);
+    RenderRequest request = stress_request(&view);
+    request.bands = 1u << BAND_OPTICAL, request.optical = OPTICAL_RGB;
+    request.samples = of->sky_samples > 0 ? 3 : 4, request.edge_samples = 0;
+    request.sky_samples = of->sky_samples, request.sky_visibility = of->sky_samples == 0;
+    for (int c = 0; c < optical_channel_count; c++) /* with the sun alone nothing shines from below */
+        w->world.materials.ground_rho[c] = of->sky > 0 ? ground_rho : 0;
+    air_even(&w->air, of->sun_enu, sun_w_m2, even, 0, w->world.planck_mwir, w->world.planck_lwir);
+    return stress_render(w, &request) && write_planes(folder, of->name, &w->picture);
+}
+
+static bool draw_house(StressWorld *w, const char *folder, double ground_m)
+{
+    const double *s = high_sun_enu;
+    return write_scene(folder, &house, s) &&
+           draw(w, folder, &house, ground_m, &(Drawn){"direct.bin", {s[0], s[1], s[2]}, 0, 0}) &&
+           draw(w, folder, &house, ground_m, &(Drawn){"sampled.bin", {s[0], s[1], s[2]}, sky_w_m2_sr, 48}) &&
+           draw(w, folder, &house, ground_m, &(Drawn){"quick.bin", {s[0], s[1], s[2]}, sky_w_m2_sr, 0});
+}
+
+static bool draw_windows(StressWorld *w, const char *folder, double ground_m)
+{
+    const double *s = low_sun_enu;
+    bool          ok = true;
+    for (size_t k = 0; k < sizeof window / sizeof *window && ok; k++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s.bin", window[k].name);
+        ok = write_scene(folder, &window[k], s) &&
+             draw(w, folder, &window[k], ground_m, &(Drawn){name, {s[0], s[1], s[2]}, sky_w_m2_sr, 0});
+        snprintf(name, sizeof name, "%s_sampled.bin", window[k].name);
+        ok = ok && draw(w, folder, &window[k], ground_m, &(Drawn){name, {s[0], s[1], s[2]}, sky_w_m2_sr, 48});
+    }
+    return ok;
 }
 
 int main(int argc, char **argv)
 {
     StressWorld w;
     Scenery     scenery = {0};
-    bool        ok = argc == 2 && stress_world_open(&w, 2) == STATUS_OK;
+    const bool  panes = argc == 3 && strcmp(argv[2], "panes") == 0;
+    bool        ok = (argc == 2 || panes) && stress_world_open(&w, 2) == STATUS_OK;
     if (!ok) return 2;
     w.world.landscape = &w.landscape;
     detail_table_close(w.world.detail);
@@ -95,18 +149,18 @@ int main(int argc, char **argv)
     for (int c = 0; c < optical_channel_count; c++) m->ground_rho[c] = ground_rho;
     const TownOf of = {.buildings = 1, .middle_enu = {51, 51}, .landscape = &w.landscape, .seed = 5};
     ok = town_create(&scenery, &of) == STATUS_OK;
+    if (ok) strcpy(scenery.model[0].part[0].material, "brick_red"); /* no ground is of it, as some is of concrete */
     const double ground_m = elevation_height(&w.landscape.elevation, 0, 0, NULL);
     for (int k = 0; k < 3 && ok; k++) {
         const int row = materials_find(m, scenery.model[0].part[k].material);
         ok = strcmp(scenery.model[0].part[k].name, part_name[k]) == 0 && row > 0;
-        if (ok) set_material(m, row, part_rho[k]);
+        if (ok) set_material(m, row, panes && k == 2 ? (float)pane_rho : part_rho[k]);
+        if (ok && panes && k == 2) m->material[row].gloss = 1, m->material[row].roughness = 0;
         ok = ok && write_part(argv[1], &scenery.object[0], &scenery.model[0], k, ground_m);
     }
     /* what shines on the ground about it is of the materials as they are when scenery joins the world */
     ok = ok && world_scenery(&w.world, &scenery, NULL, w.pool) == STATUS_OK;
-    ok = ok && draw(&w, argv[1], "direct.bin", ground_m, 0, 0);
-    ok = ok && draw(&w, argv[1], "sampled.bin", ground_m, sky_w_m2_sr, 48);
-    ok = ok && draw(&w, argv[1], "quick.bin", ground_m, sky_w_m2_sr, 0);
+    ok = ok && (panes ? draw_windows : draw_house)(&w, argv[1], ground_m);
     stress_world_close(&w);
     scenery_free(&scenery);
     return ok ? 0 : 1;
