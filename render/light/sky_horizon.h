@@ -4,7 +4,8 @@
  * sectors of azimuth, and how high above the ground what makes it is. A hit takes of it, by its normal and its height
  * above the ground, the share of the sky's light that arrives (the sky as bright everywhere), and the share that
  * buildings fill, which shine as a mean wall of that side does under the sun and sky of the moment. Before a wall that
- * the sun does not meet the ground lies in the shadow of its building, as if it had no ends. Cost: four cells a hit.
+ * the sun does not meet the ground lies in the shadow of its building, as if it had no ends. Between four cells sin^2 of the horizon is linear, as is the light that
+ * level ground loses. Cost: four cells and one horizon a hit.
  *
  * Error: sectors and cells are steps; the side of a building is known to a quarter of a metre (to half a cell where the
  * grid of heights would be larger than its memory, about 2 km square), and light is linear between cells 2 m apart, so
