@@ -446,6 +446,23 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
     out->radius_m = out->radius_m * (1 + 1e-9) + 1e-6; /* the roundings above, at any distance from the origin */
 }
 
+bool parts_posed_box(double low[3], double high[3], const PosedEntity *e)
+{
+    static const double near_miss_m = 1e-3; /* ample: 20 um */
+    if (e->model < 0) return false;
+    for (int r = 0; r < 3; r++) {
+        double middle = e->p_enu[r], half = near_miss_m;
+        for (int c = 0; c < 3; c++) {
+            middle += e->r_enu_from_body[3 * r + c] * 0.5 * (e->box_low[c] + e->box_high[c]);
+            half += fabs(e->r_enu_from_body[3 * r + c]) * 0.5 * (e->box_high[c] - e->box_low[c]);
+        }
+        low[r] = middle - half, high[r] = middle + half;
+        /* its sphere's middle, by which it is raised, is in the box */
+        low[r] = fmin(low[r], e->centre_enu[r]), high[r] = fmax(high[r], e->centre_enu[r]);
+    }
+    return true;
+}
+
 void parts_on_part(double p_node[3], double n_node[3], const Model *model, const PosedEntity *entity, uint32_t triangle,
                    const double p_enu[3], const double n_enu[3])
 {

@@ -87,6 +87,10 @@ double parts_largest_node_m(const Tracer *tracer, int model);
 void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePose *pose, const double p_enu[3],
                 const double r_enu_from_body[9], int damage);
 
+/* A box about an entity as it is posed, with its sphere's middle, along east, north and up. False: it is not drawable.
+ */
+bool parts_posed_box(double low[3], double high[3], const PosedEntity *entity);
+
 /* Distance to the first triangle nearer than far_m, both sides count; INFINITY for none. ask_all: Embree is called
  * even where the entity's box or a node's sphere is missed, which must not change the result. */
 double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_enu[3], const double d_enu[3],

@@ -2,8 +2,6 @@
  * pass above all of it. Conservative: a ray that is said to pass meets nothing. */
 #include "render/trace/scenery/scenery_heights_private.h"
 
-#include "render/trace/scenery/scenery_tracer_private.h"
-
 enum { side = 16, cells = side * side, most_tiles = 1 << 20 };
 static const double finest_m = 2;
 static const float  nothing_m = -INFINITY;
@@ -72,7 +70,7 @@ static void turn_box(double low[3], double high[3], const PosedNode *node, const
 static void raise_object(Making *m, const PosedEntity *e)
 {
     double low[3], high[3], box[2][3];
-    if (!scenery_box(e, low, high)) return;
+    if (!parts_posed_box(low, high, e)) return;
     if (high[0] - low[0] < 3 * m->h->cell_m && high[1] - low[1] < 3 * m->h->cell_m) {
         raise_box(m, low, high);
         return;
@@ -97,7 +95,7 @@ static bool bounds_of(double low[2], double high[2], const PosedEntity *posed, i
     for (int c = 0; c < 2; c++) low[c] = INFINITY, high[c] = -INFINITY;
     for (int k = 0; k < objects; k++) {
         double box[2][3];
-        if (!scenery_box(&posed[k], box[0], box[1])) continue;
+        if (!parts_posed_box(box[0], box[1], &posed[k])) continue;
         for (int c = 0; c < 2; c++) low[c] = fmin(low[c], box[0][c]), high[c] = fmax(high[c], box[1][c]);
     }
     return low[0] <= high[0];

@@ -76,7 +76,7 @@ void scenery_tracer_tops(float *z_m, const SceneryTracer *t, int nx, int ny, dou
         const PosedEntity *e = &t->posed[k];
         double             low[3], high[3];
         Cells              in;
-        if (!scenery_box(e, low, high)) continue; /* and far less than its margin is rounded */
+        if (!parts_posed_box(low, high, e)) continue; /* and far less than its margin is rounded */
         if (!cells_along(&in, &grid, 0, low[0], high[0]) || !cells_along(&in, &grid, 1, low[1], high[1])) continue;
         for (int n = 0; n < e->node_count; n++) raise_node(&grid, &e->node[n]);
     }

@@ -156,7 +156,7 @@ static void list_objects(List *out, const SceneryFrame *f, const BroadPhase *tre
         const PosedEntity *e = frame_posed(f, object[n]);
         Listed             l = {.object = object[n], .near_m = v3_dot(e->centre_enu, axis) - e->radius_m};
         int                k = n;
-        scenery_box(e, l.low, l.high);
+        parts_posed_box(l.low, l.high, e);
         if (lift) {
             const double lift_m = frame_lift_m(f, object[n]);
             l.low[2] += lift_m, l.high[2] += lift_m, l.near_m -= lift_m;

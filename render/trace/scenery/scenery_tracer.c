@@ -67,28 +67,10 @@ static Status pose(PosedEntity *out, const SceneryTracer *t, int object, const d
     return STATUS_OK;
 }
 
-/* A box about an object as it is posed, along east, north and up. */
-bool scenery_box(const PosedEntity *e, double low[3], double high[3])
-{
-    static const double near_miss_m = 1e-3; /* ample: 20 um */
-    if (e->model < 0) return false;
-    for (int r = 0; r < 3; r++) {
-        double middle = e->p_enu[r], half = near_miss_m;
-        for (int c = 0; c < 3; c++) {
-            middle += e->r_enu_from_body[3 * r + c] * 0.5 * (e->box_low[c] + e->box_high[c]);
-            half += fabs(e->r_enu_from_body[3 * r + c]) * 0.5 * (e->box_high[c] - e->box_low[c]);
-        }
-        low[r] = middle - half, high[r] = middle + half;
-        /* its sphere's middle, by which it is raised, is in the box */
-        low[r] = fmin(low[r], e->centre_enu[r]), high[r] = fmax(high[r], e->centre_enu[r]);
-    }
-    return true;
-}
-
 static bool box_that_stands(void *user, int object, double low[3], double high[3])
 {
     const SceneryTracer *t = user;
-    return scenery_box(&t->posed[object], low, high);
+    return parts_posed_box(low, high, &t->posed[object]);
 }
 
 static Status plant_tree(SceneryTracer *t)
@@ -171,7 +153,7 @@ size_t         scenery_tracer_bytes(const SceneryTracer *t) { return arena_bytes
 
 bool scenery_tracer_box(const SceneryTracer *t, int object, double low[3], double high[3])
 {
-    return scenery_box(&t->posed[object], low, high);
+    return parts_posed_box(low, high, &t->posed[object]);
 }
 
 Status scenery_tracer_materials(SceneryTracer *t, const Materials *materials, const char *path)
@@ -210,7 +192,7 @@ Status scenery_tracer_materials(SceneryTracer *t, const Materials *materials, co
 
 static bool box_that_drives(void *user, int object, double low[3], double high[3])
 {
-    return scenery_box(frame_posed(user, object), low, high);
+    return parts_posed_box(low, high, frame_posed(user, object));
 }
 
 static Status move_objects(SceneryFrame *f, double t_s, Arena *arena)

@@ -32,9 +32,6 @@ struct SceneryFrame {
     BroadLift            lift; /* bend_per_m 0: no ray bends */
 };
 
-/* A box about an object as it is posed, along east, north and up; false: there is nothing. */
-bool scenery_box(const PosedEntity *e, double low[3], double high[3]);
-
 static inline const PosedEntity *frame_posed(const SceneryFrame *f, int object)
 {
     const int mover = f->of->mover[object];
