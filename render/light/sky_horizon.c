@@ -111,7 +111,8 @@ typedef struct Horizon {
     float ground_m;
 } Horizon;
 
-/* Between the cells that have no wall near sin^2 is linear, as is the light that level ground loses. of: their share. */
+/* Between the cells that have no wall near sin^2 is linear, as is the light that level ground loses. of: their share.
+ */
 static inline void horizon_between(Horizon *out, const Four *four, float of, bool close)
 {
     F32x8 sine2 = f32x8_set(0), high = sine2, close_high = sine2;
@@ -175,8 +176,8 @@ static F32x8 shade_of(const Facet *f, F32x8 tangent, F32x8 deep)
 }
 
 /* What a horizon hides of a place so high above the ground. Cells are before the place: what makes the horizon is as
- * much farther from it. With sine and cosine s and c its tangent is s / c / (1 + s / c before / high) (1 - over / high),
- * rise / run with nothing divided yet. */
+ * much farther from it. With sine and cosine s and c its tangent is s / c / (1 + s / c before / high) (1 - over /
+ * high), rise / run with nothing divided yet. */
 static inline void hidden_by(Hidden *out, const Horizon *h, float over_m, const Facet *f, bool lit)
 {
     const F32x8 one = f32x8_set(1), none = f32x8_set(0), s = f32x8_sqrt(h->sine2), c = f32x8_sqrt(one - h->sine2);
