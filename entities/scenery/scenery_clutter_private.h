@@ -80,7 +80,6 @@ typedef struct ClutterRow {
     double       length_low_m, length_high_m;     /* of the shape; 0: its own */
     ClutterHeat  heat;
     double       running, recent; /* shares whose engine runs, and stopped lately; the rest is cold */
-    double       fire;            /* EntityDrives.burning of what burns */
 } ClutterRow;
 
 typedef struct ClutterTable {

@@ -80,7 +80,7 @@ Status world_scenery(World *world, const Scenery *scenery, const char *isa, Pool
     SceneryTracer *tracer;
     if (!etc_path(path, sizeof path, "materials.csv")) return STATUS_BAD_VALUE;
     if (scenery->objects == 0) return STATUS_OK;
-    Status status = scenery_tracer_create(&tracer, scenery, isa, pool);
+    Status status = scenery_tracer_create(&tracer, scenery, isa);
     if (status != STATUS_OK) return status;
     status = scenery_tracer_materials(tracer, &world->materials, path);
     if (status == STATUS_OK && world->landscape)

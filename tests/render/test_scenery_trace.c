@@ -86,7 +86,7 @@ static int open_stage(void **state)
     stage.triangle = malloc(most_triangles * sizeof *stage.triangle);
     return stage.arena && stage.triangle && local_frame_at(&stage.frame, &origin) == STATUS_OK &&
                    tracer_create_models(&stage.none, NULL, 0, "avx2") == STATUS_OK &&
-                   scenery_tracer_create(&stage.tracer, &stage.scenery, "avx2", NULL) == STATUS_OK
+                   scenery_tracer_create(&stage.tracer, &stage.scenery, "avx2") == STATUS_OK
                ? 0
                : -1;
 }
@@ -315,7 +315,7 @@ static void an_eye_in_a_house_sees_its_walls(void **state)
     const double        eye[3] = {2000, 2000, 1};
     memcpy(o->r_enu_from_body, up, sizeof up);
     o->p_enu[0] = 2000, o->p_enu[1] = 2000, o->p_enu[2] = 0;
-    assert_int_equal(scenery_tracer_create(&tracer, &stage.scenery, "avx2", NULL), STATUS_OK);
+    assert_int_equal(scenery_tracer_create(&tracer, &stage.scenery, "avx2"), STATUS_OK);
     stage.tracer = tracer;
     arena_reset(stage.arena);
     const Visibility *v = see(NULL, 0, 0, eye, 0);
@@ -480,7 +480,7 @@ static void rays_to_the_sun_are_left_out_only_above_all(void **state)
     hand_draw = 77;
     for (int k = 0; k < damages; k++) harm[k] = (SceneryHarm){.object = 50 * k + 3, .t_s = k % 2 ? 0 : 10, .damage = 3};
     scenery.harms = damages, scenery.harm = harm;
-    assert_int_equal(scenery_tracer_create(&harmed, &scenery, "avx2", NULL), STATUS_OK);
+    assert_int_equal(scenery_tracer_create(&harmed, &scenery, "avx2"), STATUS_OK);
     stage.tracer = harmed;
     for (int e = 0; e < heights; e++)
         for (int a = 0; a < azimuths; a++) {
@@ -528,7 +528,7 @@ static void a_yard_asks_nothing(void **state)
     hand_model(&model, 1, 16, 24);
     hand_box_into(&model, 0, (const double[3]){-5, -40, -8}, (const double[3]){5, -30, 0}); /* in the west */
     hand_box_into(&model, 0, (const double[3]){-5, 30, -8}, (const double[3]){5, 40, 0});   /* in the east */
-    assert_int_equal(scenery_tracer_create(&tracer, &scenery, "avx2", NULL), STATUS_OK);
+    assert_int_equal(scenery_tracer_create(&tracer, &scenery, "avx2"), STATUS_OK);
     stage.tracer = tracer;
     arena_reset(stage.arena);
     const Visibility *v = see(NULL, 0, 0, eye, 0);
@@ -624,14 +624,14 @@ static void wrong_numbers_are_refused(void **state)
     (void)state;
     SceneryTracer *tracer = NULL;
     stage.object[3].model = kinds;
-    CHECK(scenery_tracer_create(&tracer, &stage.scenery, "avx2", NULL) == STATUS_BAD_VALUE);
+    CHECK(scenery_tracer_create(&tracer, &stage.scenery, "avx2") == STATUS_BAD_VALUE);
     stage.object[3].model = 3;
     stage.mover[2].count = 3 * drivers;
-    CHECK(scenery_tracer_create(&tracer, &stage.scenery, "avx2", NULL) == STATUS_BAD_VALUE);
+    CHECK(scenery_tracer_create(&tracer, &stage.scenery, "avx2") == STATUS_BAD_VALUE);
     stage.mover[2].count = 3;
     const double kept = stage.object[3].p_enu[0];
     stage.object[3].p_enu[0] = NAN; /* is not there; the others are */
-    assert_int_equal(scenery_tracer_create(&tracer, &stage.scenery, "avx2", NULL), STATUS_OK);
+    assert_int_equal(scenery_tracer_create(&tracer, &stage.scenery, "avx2"), STATUS_OK);
     scenery_tracer_destroy(tracer);
     stage.object[3].p_enu[0] = kept;
 }

@@ -40,7 +40,7 @@ static int open_stage(void **state)
     stage.scenery = (Scenery){.models = 1, .objects = 1, .model = &stage.model, .object = &stage.object};
     return etc_path(path, sizeof path, "materials.csv") && etc_path(surfaces, sizeof surfaces, "surfaces.csv") &&
                    materials_open(&stage.materials, path, surfaces, NULL) == STATUS_OK &&
-                   scenery_tracer_create(&stage.tracer, &stage.scenery, "avx2", NULL) == STATUS_OK &&
+                   scenery_tracer_create(&stage.tracer, &stage.scenery, "avx2") == STATUS_OK &&
                    sky_horizons_create(&stage.horizons, stage.tracer, &stage.ground, &stage.materials, NULL) ==
                        STATUS_OK
                ? 0
@@ -121,7 +121,7 @@ static void wherever_the_grid_begins(void **state)
     SkyHorizons   *other;
     int            hidden = 0;
     two[1].p_enu[0] = -300;
-    assert_int_equal(scenery_tracer_create(&tracer, &scenery, "avx2", NULL), STATUS_OK);
+    assert_int_equal(scenery_tracer_create(&tracer, &scenery, "avx2"), STATUS_OK);
     assert_int_equal(sky_horizons_create(&other, tracer, &stage.ground, &stage.materials, NULL), STATUS_OK);
     for (int i = 0; i < 4000; i++) {
         const double p[3] = {-70 + 0.035 * i, -240 + 0.17 * (i * 37 % 2800), stage.object.p_enu[2]}, up[3] = {0, 0, 1};

@@ -68,7 +68,7 @@ static int open_stage(void **state)
                    etc_path(lamps, sizeof lamps, "lamps.csv") &&
                    materials_open(&stage.materials, path, surfaces, NULL) == STATUS_OK &&
                    lamp_types_read(&stage.types, lamps) == STATUS_OK && scenery_add_lamps(s, 5) == STATUS_OK &&
-                   scenery_tracer_create(&stage.tracer, s, "avx2", NULL) == STATUS_OK &&
+                   scenery_tracer_create(&stage.tracer, s, "avx2") == STATUS_OK &&
                    scenery_frame_create(&stage.frame, stage.tracer, &(SceneryFrameOf){0}, stage.arena) == STATUS_OK
                ? 0
                : -1;

@@ -281,7 +281,7 @@ static void a_house_that_falls_is_rubble(void **state)
     arena_reset(stage.arena);
     const int whole = measure(radar, &scene, stage.pool)->scenery.pieces;
     built.scenery.harm = &harm, built.scenery.harms = 1;
-    CHECK(scenery_tracer_create(&stage.world.scenery, &built.scenery, "avx2", stage.pool) == STATUS_OK);
+    CHECK(scenery_tracer_create(&stage.world.scenery, &built.scenery, "avx2") == STATUS_OK);
     for (int k = 0; k < 2; k++) {
         scene.t_s = 4 + 2 * k;
         pieces[k] = measure(radar, &scene, stage.pool)->scenery.pieces;

@@ -121,10 +121,9 @@ static Status pose_objects(SceneryTracer *t)
     return plant_tree(t);
 }
 
-Status scenery_tracer_create(SceneryTracer **out, const Scenery *scenery, const char *isa, Pool *pool)
+Status scenery_tracer_create(SceneryTracer **out, const Scenery *scenery, const char *isa)
 {
     Status status = check(scenery);
-    (void)pool;
     if (status != STATUS_OK) return status;
     SceneryTracer *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;

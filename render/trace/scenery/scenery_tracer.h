@@ -14,9 +14,9 @@
 
 typedef struct SceneryTracer SceneryTracer;
 
-/* scenery must outlive it. isa: as tracer_create. pool: may be NULL. STATUS_BAD_VALUE: an object's model, or a mover's
+/* scenery must outlive it. isa: as tracer_create. STATUS_BAD_VALUE: an object's model, or a mover's
  * object, is not there; it is logged. */
-Status         scenery_tracer_create(SceneryTracer **out, const Scenery *scenery, const char *isa, Pool *pool);
+Status         scenery_tracer_create(SceneryTracer **out, const Scenery *scenery, const char *isa);
 void           scenery_tracer_destroy(SceneryTracer *tracer); /* accepts NULL */
 const Scenery *scenery_tracer_of(const SceneryTracer *tracer);
 size_t         scenery_tracer_bytes(const SceneryTracer *tracer); /* of poses and tree, without models */

@@ -176,8 +176,9 @@ static void take_packet(CigiNode *node, const CigiPacket *packet)
     cigi_scene_take(&node->scene, packet);
 }
 
-static void say_news(const CigiSession *s)
+static void say_news(CigiNode *node)
 {
+    const CigiSession       *s = &node->session;
     static const char *const mode[] = {"Reset/Standby", "Operate", "Debug", "maintenance"};
     const unsigned           news = cigi_session_news(s);
     if (news & CIGI_NEWS_FIRST) log_info("cigi: the host is heard, frame %" PRIu32, s->host_frame);
@@ -187,8 +188,8 @@ static void say_news(const CigiSession *s)
     if (news & CIGI_NEWS_TIME_BACK && s->events.time_back == 1)
         log_warn("cigi: the host's time went back, before %.5f s: its frames have no picture until it is later",
                  cigi_session_time_s(s));
-    if (s->events.unstamped == 1 && s->events.idle > 0 && !s->timed)
-        log_warn("cigi: the host's time stamps are not valid: its frames have no picture");
+    if (s->events.unstamped > 0 && s->events.idle > 0 && !s->timed)
+        once(&node->unstamped, "the host's time stamps are not valid: its frames have no picture");
 }
 
 /* Once, where a host that never answers may have another address or port. */
@@ -239,7 +240,7 @@ CigiEvent cigi_node_wait(CigiNode *node, const CigiGround *ground, double wait_s
     say_unheard(node);
     const bool heard = receive(&datagram, &octets, node, wait_s);
     CigiEvent  event = heard ? cigi_session_receive(s, datagram, octets, wall_clock_s()) : CIGI_REFUSED;
-    if (event != CIGI_REFUSED) say_news(s);
+    if (event != CIGI_REFUSED) say_news(node);
     if (heard && cigi_session_news(s) & CIGI_NEWS_RESTARTED) node->standing_count = node->requests = 0;
     while (heard && cigi_session_packet(&packet, s)) take_packet(node, &packet);
     if (event == CIGI_IDLE) cigi_node_delivered(node, ground);

@@ -52,7 +52,7 @@ typedef struct CigiNode {
     CigiStanding  standing[cigi_requests_most]; /* [standing_count] */
     int           standing_count;
     uint64_t      requests_lost;              /* beyond these capacities */
-    bool          other_fov, unseen, unheard; /* said once */
+    bool          other_fov, unseen, unheard, unstamped; /* said once */
 } CigiNode;
 
 /* Opens exercise.cigi; Start of Frame is sent from the first cigi_node_wait on. log: the recording that is replayed,
