@@ -9,7 +9,7 @@ free_port
 mkfifo "$tmp/fifo"
 sender demo --set duration_s=900 --send 127.0.0.1:$port
 few=("${bare[@]}" --set exercise.listen_s=0.3 --size 96x64 --bands lwir --threads 2 --host observer --rate 5 --no-files)
-node late --address 127.0.0.1 --port $port "${few[@]}" --frames 2 --record "$tmp/fifo"
+node late --address 127.0.0.1 --port $port "${few[@]}" --frames 4 --record "$tmp/fifo"
 sleep 2
 timeout $patience cat "$tmp/fifo" >"$tmp/late.pcapng" &
 reader=$!
