@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The seeker as an FMU: its description and its functions as fmpy has them; and tools that repeat a time, go back, give no
-# numbers, stop waiting, free without terminating, or are killed: nothing hangs, and no child is left. labels: small
+# numbers, stop waiting, free without terminating, or are killed: nothing hangs, and no child is left.
 . "$(dirname "$0")/common.sh"
 judges python3.numpy python3.fmpy python3.pyproj python3.scipy
 flight=$(dirname "$0")/../tools/fmu_flight.py

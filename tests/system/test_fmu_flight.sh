@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A flight of the FMU by fmpy through the recorded demo: poses by pyproj and scipy, rates, lines of sight by truth.jsonl, and
-# places in the ring; and the same bits from a host that says the same by CIGI alone; a live flight, and its recording. labels: small
+# places in the ring; and the same bits from a host that says the same by CIGI alone; a live flight, and its recording.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 judges python3.numpy python3.fmpy python3.pyproj python3.scipy
