@@ -51,7 +51,7 @@ typedef struct CigiNode {
     int           requests;
     CigiStanding  standing[cigi_requests_most]; /* [standing_count] */
     int           standing_count;
-    uint64_t      requests_lost;              /* beyond these capacities */
+    uint64_t      requests_lost;                         /* beyond these capacities */
     bool          other_fov, unseen, unheard, unstamped; /* said once */
 } CigiNode;
 
