@@ -24,7 +24,7 @@ case $part in
     radar) check "the cases of radar" [ ${#cases[@]} = ${#radar[@]} ] ;;
     *) check "some cases" [ ${#cases[@]} -ge 9 ] ;;
 esac
-check "all records together are small" [ "$(cat tests/regress/*/record/* | wc -c)" -le 1900000 ]
+check "all records together are small" [ "$(cat tests/regress/*/record/* | wc -c)" -le 1950000 ]
 run regress "${cases[@]}" --threads 1 --junit "$tmp/junit.xml" --report "$tmp/report.html"
 cat "$tmp/stdout"
 check "exit code" [ $code = 0 ]
