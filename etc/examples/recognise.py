@@ -251,7 +251,7 @@ def ring_look(frame, wanted, bands=None):
     return Look(planes, frame.record.focal_px, None if axes is None else numpy.array(axes, float).reshape(3, 3))
 
 
-def run_ring(recogniser, name, wait_s, bands=None):
+def run_ring(recogniser, name, wait_s, bands=None, in_order=False):
     """Answers a living node, frame after frame, until it ends. Returns the count of frames and of detections."""
     from read_memory import Ring, send_answer
     ring = Ring(name, wait_s)
@@ -261,7 +261,7 @@ def run_ring(recogniser, name, wait_s, bands=None):
     named = {plane.band_name.decode(): ('optical', 'mwir', 'lwir', 'radar')[plane.band] for plane in ring.planes}
     tracks, frames, detections = Tracks(), 0, 0
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as to:
-        for frame in ring.frames():
+        for frame in ring.frames(in_order):
             look = ring_look(frame, recogniser.bands_wanted, bands)
             if not look.planes:
                 raise FileNotFoundError(f'/dev/shm/{name} has none of the bands {", ".join(bands or PREFERRED)}')
@@ -283,12 +283,14 @@ def main(recogniser, about):
     options.add_argument('--bands', type=lambda s: s.split(','), help='bands to look at, the first of which is answered; '
                          f"default: the first that are there of {','.join(PREFERRED)}")
     options.add_argument('--wait', type=float, default=60, metavar='S', help='gives up when there is no node by then')
+    options.add_argument('--in-order', action='store_true', help='takes every frame of the ring, for a node that waits for each '
+                         'answer, rather than the newest')
     o = options.parse_args()
     if (o.out is None) == (o.memory is None):
         options.error('expected OUT, or --memory NAME')
     try:
         if o.memory:
-            frames, detections = run_ring(recogniser, o.memory, o.wait, o.bands)
+            frames, detections = run_ring(recogniser, o.memory, o.wait, o.bands, o.in_order)
         else:
             frames, detections = run_folder(recogniser, o.out, o.answers, o.bands)
     except (OSError, ValueError, KeyError) as reason:

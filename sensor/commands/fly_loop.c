@@ -224,6 +224,7 @@ static Status node_options(Options *out, Flying *f, const Cast *cast)
         }
         snprintf(own[n++], text_size, "publish.memory=pitviper_fly_%ld", (long)getpid());
         snprintf(own[n++], text_size, "publish.detections_port=%d", port);
+        snprintf(own[n++], text_size, "publish.memory_slots=16"); /* frames that may wait for late answers at once */
     }
     for (int i = 0; i < n; i++) argv[argc++] = set, argv[argc++] = own[i];
     for (int i = 0; i < o->given_count; i++) argv[argc++] = o->given[i];
