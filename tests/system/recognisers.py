@@ -220,7 +220,7 @@ def ring():
             self.header = types.SimpleNamespace(detections_port=listener.getsockname()[1])
             self.planes = [types.SimpleNamespace(band_name=b'swir', band=2)]
 
-        def frames(self):
+        def frames(self, in_order):
             yield types.SimpleNamespace(record=types.SimpleNamespace(frame=7, focal_px=FOCAL_PX), planes={'swir/Y': plane})
 
     read_memory.Ring = Ring
