@@ -1,6 +1,8 @@
 /* dis/cigi/cigi_link.c: the socket of a CIGI host and this image generator. */
 #include "dis/cigi/cigi_link.h"
 
+#include "dis/network/host_port.h"
+
 #include <arpa/inet.h>
 #include <errno.h>
 #include <poll.h>
@@ -10,63 +12,36 @@
 
 enum { most_octets = 65536 };
 
-typedef union Address {
-    struct sockaddr     any;
-    struct sockaddr_in  v4;
-    struct sockaddr_in6 v6;
-} Address;
-
 struct CigiLink {
     int      socket;
-    Address  host;
+    HostPort host;
     uint64_t foreign, unsent;
     uint8_t  datagram[most_octets];
 };
 
-static bool parse(Address *out, const char *host_port)
-{
-    char        host[INET6_ADDRSTRLEN];
-    const char *colon = strrchr(host_port, ':');
-    const bool  v6 = *host_port == '[';
-    long long   port;
-    if (!colon || !text_to_long(&port, colon + 1) || port < 1 || port > 65535) return false;
-    const char  *begin = host_port + v6;
-    const size_t length = (size_t)(colon - begin) - (size_t)v6;
-    if (colon < begin + v6 || (v6 && colon[-1] != ']') || length >= sizeof host) return false;
-    memcpy(host, begin, length);
-    host[length] = 0;
-    memset(out, 0, sizeof *out);
-    out->any.sa_family = v6 ? AF_INET6 : AF_INET;
-    if (v6) out->v6.sin6_port = htons((uint16_t)port);
-    else out->v4.sin_port = htons((uint16_t)port);
-    return inet_pton(out->any.sa_family, host, v6 ? (void *)&out->v6.sin6_addr : (void *)&out->v4.sin_addr) == 1;
-}
-
 bool cigi_link_address_good(const char *host_port)
 {
-    Address address;
-    return parse(&address, host_port);
+    HostPort address;
+    return host_port_parse(&address, host_port);
 }
 
 bool cigi_link_recorded(const char *host_port) { return strcmp(host_port, "recorded") == 0; }
-
-static socklen_t size_of(const Address *a) { return a->any.sa_family == AF_INET6 ? sizeof a->v6 : sizeof a->v4; }
 
 Status cigi_link_open(CigiLink **out, const char *host_port, int own_port)
 {
     CigiLink *link = calloc(1, sizeof *link);
     if (!link) return STATUS_NO_MEMORY;
     link->socket = -1;
-    if (!parse(&link->host, host_port)) {
+    if (!host_port_parse(&link->host, host_port)) {
         log_error("cigi: '%s' is not HOST:PORT with a numeric address, for example 127.0.0.1:8004", host_port);
         cigi_link_close(link);
         return STATUS_BAD_VALUE;
     }
-    Address own = {.any.sa_family = link->host.any.sa_family};
+    HostPort own = {.any.sa_family = link->host.any.sa_family};
     if (own.any.sa_family == AF_INET6) own.v6.sin6_port = htons((uint16_t)own_port), own.v6.sin6_addr = in6addr_any;
     else own.v4.sin_port = htons((uint16_t)own_port), own.v4.sin_addr.s_addr = htonl(INADDR_ANY);
     link->socket = socket(own.any.sa_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (link->socket < 0 || bind(link->socket, &own.any, size_of(&own)) != 0) {
+    if (link->socket < 0 || bind(link->socket, &own.any, host_port_size(&own)) != 0) {
         log_error("cigi: cannot listen on port %d: %s%s", own_port, strerror(errno),
                   errno == EADDRINUSE ? "; another program has it: choose another (exercise.cigi_port)" : "");
         cigi_link_close(link);
@@ -83,7 +58,7 @@ void cigi_link_close(CigiLink *link)
     free(link);
 }
 
-static bool from_host(const Address *from, const Address *host)
+static bool from_host(const HostPort *from, const HostPort *host)
 {
     if (from->any.sa_family != host->any.sa_family) return false;
     if (host->any.sa_family == AF_INET6)
@@ -94,7 +69,7 @@ static bool from_host(const Address *from, const Address *host)
 bool cigi_link_receive(const uint8_t **datagram, size_t *octets, CigiLink *link, double wait_s)
 {
     struct pollfd what = {.fd = link->socket, .events = POLLIN};
-    Address       from;
+    HostPort      from;
     socklen_t     size = sizeof from;
     if (poll(&what, 1, (int)(1e3 * wait_s)) != 1) return false;
     const ssize_t got = recvfrom(link->socket, link->datagram, sizeof link->datagram, MSG_DONTWAIT, &from.any, &size);
@@ -110,7 +85,8 @@ bool cigi_link_receive(const uint8_t **datagram, size_t *octets, CigiLink *link,
 
 void cigi_link_send(CigiLink *link, const uint8_t *datagram, size_t octets)
 {
-    const ssize_t sent = sendto(link->socket, datagram, octets, MSG_DONTWAIT, &link->host.any, size_of(&link->host));
+    const ssize_t sent =
+        sendto(link->socket, datagram, octets, MSG_DONTWAIT, &link->host.any, host_port_size(&link->host));
     link->unsent += sent != (ssize_t)octets;
 }
 

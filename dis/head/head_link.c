@@ -1,6 +1,8 @@
 /* dis/head/head_link.c: the socket of a head tracker, and the thread that takes its datagrams. */
 #include "dis/head/head_link.h"
 
+#include "dis/network/host_port.h"
+
 #include <arpa/inet.h>
 #include <errno.h>
 #include <pthread.h>
@@ -19,35 +21,10 @@ struct HeadLink {
     HeadCounters    counters;
 };
 
-typedef union Address {
-    struct sockaddr     any;
-    struct sockaddr_in  v4;
-    struct sockaddr_in6 v6;
-} Address;
-
-static bool parse(Address *out, const char *address_port)
-{
-    char        host[INET6_ADDRSTRLEN];
-    const char *colon = strrchr(address_port, ':');
-    const bool  v6 = *address_port == '[';
-    long long   port;
-    if (!colon || !text_to_long(&port, colon + 1) || port < 1 || port > 65535) return false;
-    const char  *begin = address_port + v6;
-    const size_t length = (size_t)(colon - begin) - (size_t)v6;
-    if (colon < begin + v6 || (v6 && colon[-1] != ']') || length >= sizeof host) return false;
-    memcpy(host, begin, length);
-    host[length] = 0;
-    memset(out, 0, sizeof *out);
-    out->any.sa_family = v6 ? AF_INET6 : AF_INET;
-    if (v6) out->v6.sin6_port = htons((uint16_t)port);
-    else out->v4.sin_port = htons((uint16_t)port);
-    return inet_pton(out->any.sa_family, host, v6 ? (void *)&out->v6.sin6_addr : (void *)&out->v4.sin_addr) == 1;
-}
-
 bool head_address_good(const char *address_port)
 {
-    Address address;
-    return parse(&address, address_port);
+    HostPort address;
+    return host_port_parse(&address, address_port);
 }
 
 static void take(HeadLink *link, const uint8_t *octets, size_t count)
@@ -90,12 +67,12 @@ static bool start(HeadLink *link)
 Status head_link_open(HeadLink **out, const char *address_port)
 {
     static const struct timeval look = {.tv_usec = 200000}; /* whether it ends */
-    Address                     own;
+    HostPort                    own;
     HeadLink                   *link = calloc(1, sizeof *link);
     if (!link) return STATUS_NO_MEMORY;
     link->socket = -1;
     pthread_mutex_init(&link->lock, NULL);
-    if (!parse(&own, address_port)) {
+    if (!host_port_parse(&own, address_port)) {
         log_error("head: '%s' is not ADDRESS:PORT with a numeric address of this machine, for example 127.0.0.1:5010",
                   address_port);
         head_link_close(link, NULL);
@@ -103,8 +80,7 @@ Status head_link_open(HeadLink **out, const char *address_port)
     }
     link->socket = socket(own.any.sa_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (link->socket < 0 || setsockopt(link->socket, SOL_SOCKET, SO_RCVTIMEO, &look, sizeof look) != 0 ||
-        bind(link->socket, &own.any, own.any.sa_family == AF_INET6 ? sizeof own.v6 : sizeof own.v4) != 0 ||
-        !start(link)) {
+        bind(link->socket, &own.any, host_port_size(&own)) != 0 || !start(link)) {
         log_error("head: cannot listen on %s: %s; choose another address or port (exercise.head)", address_port,
                   strerror(errno));
         head_link_close(link, NULL);
