@@ -140,6 +140,8 @@ int text_split(char **cell, int capacity, char *line);
 /* Whole string as a finite double / integer; false otherwise (`1,5`, `3x`, empty, out of range). */
 bool text_to_double(double *out, const char *text);
 bool text_to_long(long long *out, const char *text);
+/* The line after the one that `at` is in; NULL: there is none. */
+const char *text_next_line(const char *at);
 /* UTC as 2026-06-21T10:00:00Z, seconds with or without a fraction, 1900 .. 2100, to Unix time. */
 bool text_to_unix_s(double *unix_s, const char *text);
 /* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other untrusted bytes. */

@@ -21,6 +21,12 @@ bool text_to_double(double *out, const char *text)
     return true;
 }
 
+const char *text_next_line(const char *at)
+{
+    const char *end = strchr(at, '\n');
+    return end && end[1] ? end + 1 : NULL;
+}
+
 bool text_to_long(long long *out, const char *text)
 {
     if (!*text || strchr(" \t\n\v\f\r", *text)) return false;

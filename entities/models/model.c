@@ -155,6 +155,16 @@ static double farthest(const Model *model, int index, Drum drum, int samples)
     return drum_reach(&drum);
 }
 
+void model_corner(double p[3], const Model *model, const ModelPart *part, int corner)
+{
+    double turned[3];
+    memcpy(p, model->vertex[model->triangle[part->first_triangle + corner / 3][corner % 3]], 3 * sizeof *p);
+    for (int node = part->node; node >= 0; node = model->node[node].parent) {
+        m3_mul_v3(turned, model->node[node].r_parent_from_node, p);
+        v3_add(p, turned, model->node[node].p_parent);
+    }
+}
+
 void model_box_without(double low[3], double high[3], const Model *model, uint32_t without)
 {
     bool any = false;
@@ -163,12 +173,8 @@ void model_box_without(double low[3], double high[3], const Model *model, uint32
         const ModelPart *part = &model->part[p];
         if (without >> part->role & 1) continue;
         for (int c = 0; c < 3 * part->triangle_count; c++) {
-            double at[3], turned[3];
-            memcpy(at, model->vertex[model->triangle[part->first_triangle + c / 3][c % 3]], sizeof at);
-            for (int node = part->node; node >= 0; node = model->node[node].parent) {
-                m3_mul_v3(turned, model->node[node].r_parent_from_node, at);
-                v3_add(at, turned, model->node[node].p_parent);
-            }
+            double at[3];
+            model_corner(at, model, part, c);
             for (int k = 0; k < 3; k++) low[k] = fmin(low[k], at[k]), high[k] = fmax(high[k], at[k]);
             any = true;
         }

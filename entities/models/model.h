@@ -106,6 +106,8 @@ void model_pose(NodePose *pose, const Model *model, const double *value);
  * calls last. radius_m is exact for what is fixed, and an upper bound within a few per cent for what moves.
  * STATUS_NO_MEMORY: nothing is filled in. */
 Status model_measure(Model *model);
+/* Corner 0 .. 3 triangle_count - 1 of a part, in the body with all joints as they were made, m. */
+void model_corner(double p[3], const Model *model, const ModelPart *part, int corner);
 /* Bounding box at rest of the parts whose role is not in `without` (1 << role); of all parts where no other is left. */
 void model_box_without(double low[3], double high[3], const Model *model, uint32_t without);
 void model_destroy(Model *model); /* frees and zeroes; accepts zeroes */

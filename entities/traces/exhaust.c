@@ -13,12 +13,8 @@ static bool outlet_of(double at_body[3], double d_body[3], const Model *model, H
         const ModelPart *part = &model->part[p];
         if (part->role != role) continue;
         for (int c = 0; c < 3 * part->triangle_count; c++) {
-            double at[3], turned[3];
-            memcpy(at, model->vertex[model->triangle[part->first_triangle + c / 3][c % 3]], sizeof at);
-            for (int node = part->node; node >= 0; node = model->node[node].parent) {
-                m3_mul_v3(turned, model->node[node].r_parent_from_node, at);
-                v3_add(at, turned, model->node[node].p_parent);
-            }
+            double at[3];
+            model_corner(at, model, part, c);
             v3_add(sum, sum, at);
             count++;
         }

@@ -88,23 +88,17 @@ bool flight_note_read(FlightNote *out, const char *line)
     return true;
 }
 
-static const char *next_line(const char *at)
-{
-    const char *end = strchr(at, '\n');
-    return end && end[1] ? end + 1 : NULL;
-}
-
 Status flight_notes_read(FlightNote **out, int *count, const char *notes)
 {
     int        lines = 0;
     FlightNote one;
     *out = NULL;
     *count = 0;
-    for (const char *at = notes; at; at = next_line(at)) lines += flight_note_read(&one, at);
+    for (const char *at = notes; at; at = text_next_line(at)) lines += flight_note_read(&one, at);
     if (lines == 0) return STATUS_OK;
     *out = calloc((size_t)lines, sizeof **out);
     if (!*out) return STATUS_NO_MEMORY;
-    for (const char *at = notes; at && *count < lines; at = next_line(at))
+    for (const char *at = notes; at && *count < lines; at = text_next_line(at))
         if (flight_note_read(&(*out)[*count], at)) ++*count;
     return STATUS_OK;
 }

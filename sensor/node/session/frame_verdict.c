@@ -86,23 +86,17 @@ static int by_number(const void *a, const void *b)
     return p->number < q->number ? -1 : p->number > q->number;
 }
 
-static const char *next_line(const char *at)
-{
-    const char *end = strchr(at, '\n');
-    return end && end[1] ? end + 1 : NULL;
-}
-
 Status frame_verdicts_read(FrameVerdicts **out, const char *notes)
 {
     int     lines = 0;
     Verdict one;
     *out = NULL;
-    for (const char *at = notes; at; at = next_line(at)) lines += read_line(&one, at);
+    for (const char *at = notes; at; at = text_next_line(at)) lines += read_line(&one, at);
     if (lines == 0) return STATUS_OK;
     FrameVerdicts *v = malloc(sizeof *v + (size_t)lines * sizeof *v->verdict);
     if (!v) return STATUS_NO_MEMORY;
     v->count = 0;
-    for (const char *at = notes; at; at = next_line(at))
+    for (const char *at = notes; at; at = text_next_line(at))
         if (read_line(&one, at)) v->verdict[v->count++] = one;
     qsort(v->verdict, (size_t)v->count, sizeof *v->verdict, by_number);
     *out = v;

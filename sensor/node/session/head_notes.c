@@ -43,23 +43,17 @@ static int by_time(const void *a, const void *b)
     return p->t_s < q->t_s ? -1 : p->t_s > q->t_s;
 }
 
-static const char *next_line(const char *at)
-{
-    const char *end = strchr(at, '\n');
-    return end && end[1] ? end + 1 : NULL;
-}
-
 Status head_notes_read(HeadNotes **out, const char *notes)
 {
     int      lines = 0;
     HeadNote one;
     *out = NULL;
-    for (const char *at = notes; at; at = next_line(at)) lines += read_line(&one, at);
+    for (const char *at = notes; at; at = text_next_line(at)) lines += read_line(&one, at);
     if (lines == 0) return STATUS_OK;
     HeadNotes *n = malloc(sizeof *n + (size_t)lines * sizeof *n->note);
     if (!n) return STATUS_NO_MEMORY;
     n->count = 0;
-    for (const char *at = notes; at; at = next_line(at))
+    for (const char *at = notes; at; at = text_next_line(at))
         if (read_line(&one, at)) n->note[n->count++] = one;
     qsort(n->note, (size_t)n->count, sizeof *n->note, by_time);
     *out = n;
