@@ -104,45 +104,6 @@ static inline bool find_cells(Four *out, const SkyHorizons *h, double x_m, doubl
     return true;
 }
 
-/* The horizon of a place, of sectors. */
-typedef struct Horizon {
-    F32x8 sine2, high; /* squared sine of its elevation; what makes it, above the ground, by what it hides, m */
-    F32x8 close_high;  /* the same of what stands close, without weights, m */
-    float ground_m;
-} Horizon;
-
-/* Between the cells that have no wall near sin^2 is linear, as is the light that level ground loses. of: their share.
- */
-static inline void horizon_between(Horizon *out, const Four *four, float of, bool close)
-{
-    F32x8 sine2 = f32x8_set(0), high = sine2, close_high = sine2;
-    float ground_m = 0, known = 0;
-    for (int k = 0; k < 4; k++) {
-        const HorizonCell *cell = four->cell[k];
-        if (!cell || cell->wall_rise > 0) continue;
-        const F32x8 weight = _mm256_set1_ps(four->weight[k] / of);
-        const F32x8 s = f32x8_of_ints(i32x8_of_bytes(cell->slope)), up = f32x8_of_ints(i32x8_of_bytes(cell->height));
-        const F32x8 share = weight * (s * s);
-        sine2 = sine2 + share, high = f32x8_fma(share, up, high);
-        if (close) close_high = close_high + f32x8_and(weight * up, f32x8_greater(s, f32x8_set(0.24 * 255)));
-        ground_m = fmaf(four->weight[k], cell->ground_m, ground_m), known += four->weight[k];
-    }
-    /* no more than theirs, if rounded */
-    out->high = f32x8_set(horizon_height_step_m * (1 - 1e-6)) * high / f32x8_max(sine2, f32x8_set(1e-6));
-    out->sine2 = f32x8_min(sine2 * f32x8_set(1 / (255.0 * 255)), f32x8_set(1 - 1e-6));
-    out->close_high = f32x8_set(horizon_height_step_m) * close_high;
-    out->ground_m = known > 0 ? ground_m / known : 0;
-}
-
-static inline void horizon_of(Horizon *out, const HorizonCell *cell)
-{
-    const F32x8 code = f32x8_of_ints(i32x8_of_bytes(cell->slope)) * f32x8_set(1.0 / 255);
-    out->sine2 = f32x8_min(code * code, f32x8_set(1 - 1e-6));
-    out->high = f32x8_of_ints(i32x8_of_bytes(cell->height)) * f32x8_set(horizon_height_step_m);
-    out->close_high = f32x8_and(out->high, f32x8_greater(code, f32x8_set(0.24)));
-    out->ground_m = cell->ground_m;
-}
-
 /* Light of a sky that is as bright everywhere, on a plane, of the part of a sector above a horizon of tangent rise /
  * run: the integrals over elevation h .. pi/2 of cos^2 and of sin cos. */
 static inline F32x8 above(F32x8 rise, F32x8 run, const Facet *f)
@@ -175,26 +136,19 @@ static F32x8 shade_of(const Facet *f, F32x8 tangent, F32x8 deep)
     return one + deep - f32x8_sqrt(f32x8_fma(deep, deep, one));
 }
 
-/* What a horizon hides of a place so high above the ground. Cells are before the place: what makes the horizon is as
- * much farther from it. With sine and cosine s and c its tangent is s / c / (1 + s / c before / high) (1 - over /
- * high), rise / run with nothing divided yet. */
-static inline void hidden_by(Hidden *out, const Horizon *h, float over_m, const Facet *f, bool lit)
-{
-    const F32x8 one = f32x8_set(1), none = f32x8_set(0), s = f32x8_sqrt(h->sine2), c = f32x8_sqrt(one - h->sine2);
-    const F32x8 rise = s * f32x8_max(h->high - _mm256_set1_ps(over_m > 0 ? over_m : 0), none);
-    const F32x8 run = f32x8_max(f32x8_fma(s, f->before_m, c * h->high), f32x8_set(1e-6));
-    out->light = f32x8_max(f->all - above(rise, run, f), none);
-    out->close_high = h->close_high;
-    out->lit = out->shaded = none;
-    if (!lit) return;
-    out->lit = out->light * f->sunny;
-    out->shaded = out->light * shade_of(f, rise / run, f->deep);
-}
+/* What cells say of a place, by sectors, as sums over their shares. */
+typedef struct Horizon {
+    F32x8 rest, sine2, high; /* share that no nearest wall fills; there squared sine of the elevation, and of that times
+                              * how high above the ground what makes it is, in steps */
+    F32x8 walls, wall_sine2, lit, deep; /* share that nearest walls fill; there the same of their edges, cosine of the
+                                         * sun on them, and depth of their shadows in their heights */
+    F32x8 close_high;                   /* how high what stands close is, in steps */
+} Horizon;
 
-/* A cell's nearest wall from a place: what of each sector it fills, and the tangent of its edge there. */
+/* A cell's nearest wall from a place: what of each sector it fills, and sin^2 of the elevation of its edge there. */
 typedef struct WallSeen {
-    F32x8 filled, tangent;
-    float lit, deep; /* cosine of the sun on it, depth of its shadow in its heights */
+    F32x8 filled, sine2;
+    float lit, deep;
 } WallSeen;
 
 /* Arc tangent of y / x, x > 0, in sectors; within 0.005. */
@@ -213,10 +167,10 @@ static F32x8 sine2_to(F32x8 sectors, F32x8 edge)
     return tangent2 / (f32x8_set(1) + tangent2);
 }
 
-static void wall_seen(WallSeen *out, const HorizonCell *cell, float z_m, const Facet *f, const double off_m[2])
+static inline void wall_seen(WallSeen *out, const HorizonCell *cell, float z_m, const Facet *f, const double off_m[2])
 {
     static const float number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const F32x8        half = f32x8_set(0.5), none = f32x8_set(0), one = f32x8_set(1);
+    const F32x8        half = f32x8_set(0.5), none = f32x8_set(0);
     const double      *n = f->facing_enu[cell->wall_facing], sun = n[0] * f->sun_enu[0] + n[1] * f->sun_enu[1];
     const double       there_m = cell->wall_away * horizon_away_step_m + n[0] * off_m[0] + n[1] * off_m[1];
     const double       over_m = fmax((double)(z_m - cell->ground_m), 0);
@@ -235,33 +189,59 @@ static void wall_seen(WallSeen *out, const HorizonCell *cell, float z_m, const F
     out->filled = f32x8_clamp(to - from, 0, 1);
     const F32x8 mid = half * (from + to), aside = f32x8_set(0.28867513) * out->filled,
                 edge = f32x8_set(rise_m / (double)away_m);
-    const F32x8 sine2 = half * (sine2_to(mid - aside, edge) + sine2_to(mid + aside, edge)); /* Gauss's two places */
-    out->tangent = f32x8_sqrt(sine2 / (one - sine2));
+    out->sine2 = half * (sine2_to(mid - aside, edge) + sine2_to(mid + aside, edge)); /* Gauss's two places */
 }
 
-/* What a cell with a wall near hides: the wall, and its horizon where that is not. */
-static void hidden_by_wall(Hidden *out, const HorizonCell *cell, float z_m, const Facet *f, const double off_m[2],
-                           bool lit)
+/* Between cells sin^2 is linear, as is the light that level ground loses. */
+static inline void horizon_of(Horizon *out, const Four *four, float z_m, const Facet *f, bool own)
 {
-    Horizon  horizon;
-    WallSeen wall;
-    horizon_of(&horizon, cell);
-    hidden_by(out, &horizon, z_m - cell->ground_m, f, lit);
-    wall_seen(&wall, cell, z_m, f, off_m);
-    const F32x8 fills = f32x8_max(f->all - above(wall.tangent, f32x8_set(1), f), f32x8_set(0));
-    out->light = f32x8_lerp(out->light, fills, wall.filled);
-    out->close_high = f32x8_select(f32x8_greater(wall.filled, f32x8_set(0.5)), horizon.high, out->close_high);
+    const F32x8 none = f32x8_set(0);
+    *out = (Horizon){none, none, none, none, none, none, none, none};
+    for (int k = 0; k < 4; k++) {
+        const HorizonCell *cell = four->cell[k];
+        if (!cell || !(four->weight[k] > 0)) continue;
+        const F32x8 weight = _mm256_set1_ps(four->weight[k]);
+        const F32x8 s = f32x8_of_ints(i32x8_of_bytes(cell->slope)), up = f32x8_of_ints(i32x8_of_bytes(cell->height));
+        F32x8       rest = weight, close = f32x8_greater(s, f32x8_set(0.24 * 255));
+        if (cell->wall_rise > 0) {
+            WallSeen wall;
+            wall_seen(&wall, cell, z_m, f, four->off_m[k]);
+            const F32x8 filled = weight * wall.filled;
+            rest = rest - filled, out->walls = out->walls + filled;
+            out->wall_sine2 = f32x8_fma(filled, wall.sine2, out->wall_sine2);
+            out->lit = f32x8_fma(filled, _mm256_set1_ps(wall.lit), out->lit);
+            out->deep = f32x8_fma(filled, _mm256_set1_ps(wall.deep), out->deep);
+            close = f32x8_or(close, f32x8_greater(wall.filled, f32x8_set(0.5)));
+        }
+        const F32x8 sine2 = rest * (s * s);
+        out->rest = out->rest + rest, out->sine2 = out->sine2 + sine2, out->high = f32x8_fma(sine2, up, out->high);
+        if (own) out->close_high = out->close_high + f32x8_and(weight * up, close);
+    }
+}
+
+/* What a horizon hides of a place so high above the ground. Cells are before the place: what makes the horizon is as
+ * much farther from it. With sine and cosine s and c its tangent is s / c / (1 + s / c before / high) (1 - over /
+ * high), rise / run with nothing divided yet. Nearest walls are known from the place itself. */
+static inline void hidden_by(Hidden *out, const Horizon *h, float over_m, const Facet *f, bool lit)
+{
+    const F32x8 one = f32x8_set(1), none = f32x8_set(0), least = f32x8_set(1e-6), most = f32x8_set(1 - 1e-6);
+    const F32x8 sine2 = f32x8_min(h->sine2 * f32x8_set(1 / (255.0 * 255)) / f32x8_max(h->rest, least), most);
+    /* no more than theirs, if rounded */
+    const F32x8 high = f32x8_set(horizon_height_step_m * (1 - 1e-6)) * h->high / f32x8_max(h->sine2, least);
+    const F32x8 s = f32x8_sqrt(sine2), c = f32x8_sqrt(one - sine2);
+    const F32x8 rise = s * f32x8_max(high - _mm256_set1_ps(over_m > 0 ? over_m : 0), none);
+    const F32x8 run = f32x8_max(f32x8_fma(s, f->before_m, c * high), least);
+    const F32x8 per_wall = one / f32x8_max(h->walls, least), edge2 = f32x8_min(h->wall_sine2 * per_wall, most);
+    const F32x8 edge = f32x8_sqrt(edge2), level = f32x8_sqrt(one - edge2);
+    const F32x8 far = h->rest * f32x8_max(f->all - above(rise, run, f), none);
+    const F32x8 near = f32x8_max(f->all - above(f32x8_max(edge, least), level, f), none);
+    out->light = f32x8_fma(h->walls, near, far);
+    out->close_high = f32x8_set(horizon_height_step_m) * h->close_high;
+    out->lit = out->shaded = none;
     if (!lit) return;
-    out->lit = f32x8_lerp(out->lit, fills * _mm256_set1_ps(wall.lit), wall.filled);
-    out->shaded = f32x8_lerp(out->shaded, fills * shade_of(f, wall.tangent, _mm256_set1_ps(wall.deep)), wall.filled);
-}
-
-static inline void add(Hidden *to, const Hidden *from, float weight)
-{
-    const F32x8 w = _mm256_set1_ps(weight);
-    to->light = f32x8_fma(w, from->light, to->light), to->lit = f32x8_fma(w, from->lit, to->lit);
-    to->shaded = f32x8_fma(w, from->shaded, to->shaded);
-    to->close_high = f32x8_fma(w, from->close_high, to->close_high);
+    out->lit = f32x8_fma(near, h->lit, far * f->sunny);
+    out->shaded = f32x8_fma(h->walls * near, shade_of(f, edge / level, h->deep * per_wall),
+                            far * shade_of(f, rise / run, f->deep));
 }
 
 static inline void facet(Facet *f, const SkyHorizons *h, const float n[3], const SkyHorizonLight *light)
@@ -289,30 +269,21 @@ static inline void facet(Facet *f, const SkyHorizons *h, const float n[3], const
 static inline Seen seen_from(const Four *four, const SkyHorizons *h, float z_m, const float n[3],
                              const SkyHorizonLight *light, bool own)
 {
-    Seen   seen = {.share = 1};
-    Hidden all = {f32x8_set(0), f32x8_set(0), f32x8_set(0), f32x8_set(0)}, one;
-    Facet  f;
-    float  walled = 0, sum[4], more[4];
-    bool   hides = false;
+    Seen    seen = {.share = 1};
+    Hidden  all;
+    Horizon horizon;
+    Facet   f;
+    float   ground_m = 0, known = 0, sum[4], more[4];
+    bool    hides = false;
     for (int k = 0; k < 4; k++) {
         if (!four->cell[k]) continue;
         hides = hides || !is_open(four->cell[k]);
-        if (four->cell[k]->wall_rise > 0) walled += four->weight[k];
+        ground_m = fmaf(four->weight[k], four->cell[k]->ground_m, ground_m), known += four->weight[k];
     }
-    if (!hides) return seen;
+    if (!hides || !(known > 0)) return seen;
     facet(&f, h, n, light);
-    if (walled < 1 - 1e-5f) {
-        Horizon horizon;
-        horizon_between(&horizon, four, 1 - walled, own);
-        hidden_by(&one, &horizon, z_m - horizon.ground_m, &f, light != NULL);
-        add(&all, &one, 1 - walled);
-    }
-    for (int k = 0; k < 4 && walled > 0; k++) {
-        const HorizonCell *cell = four->cell[k];
-        if (!cell || cell->wall_rise == 0 || !(four->weight[k] > 0)) continue;
-        hidden_by_wall(&one, cell, z_m, &f, four->off_m[k], light != NULL);
-        add(&all, &one, four->weight[k]);
-    }
+    horizon_of(&horizon, four, z_m, &f, own);
+    hidden_by(&all, &horizon, z_m - ground_m / known, &f, light != NULL);
     _mm_storeu_ps(sum, sums_of_four(all.light, all.lit, all.shaded, f.all));
     if (sum[3] > 1e-4f) seen.share = 1 - sum[0] / sum[3], seen.lit = sum[1] / sum[3], seen.shaded = sum[2] / sum[3];
     if (own) {
@@ -359,37 +330,53 @@ static float own_shade(const SkyHorizonLight *light, const Seen *seen, const flo
     return 1 - z_m / sqrtf(z_m * z_m + deep_m * deep_m);
 }
 
+/* Of a hit: by what to multiply its light, by AirBand, and of the ground before it that below has (1: nothing). */
+typedef struct Factors {
+    float of[8], sunny[8];
+    bool  open, shaded; /* whether they are 1 each */
+} Factors;
+
+static void factors_of(Factors *out, const SkyHorizons *h, const SkyHorizonLight *light, const Hits *hits, int i)
+{
+    const F32x8 sky = f32x8_load(light->sky), level = f32x8_load(light->level);
+    const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]}, z_m = (float)hits->p_enu[2][i];
+    const bool  own = hits->kind[i] == hit_scenery;
+    Four        four;
+    out->open = true, out->shaded = false;
+    if (!find_cells(&four, h, hits->p_enu[0][i], hits->p_enu[1][i], n)) return;
+    const Seen  seen = seen_from(&four, h, z_m, n, light, own);
+    const float above_m = own ? z_m - ground_under(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m) : 0;
+    const float shade = own ? own_shade(light, &seen, n, above_m) : 0;
+    if (seen.share == 1 && shade == 0) return;
+    out->open = false, out->shaded = shade > 0;
+    const F32x8 up = _mm256_set1_ps(0.5f * (1 + n[2])), down = _mm256_set1_ps(0.5f * (1 - n[2])) * level;
+    const F32x8 open = f32x8_max(sky * up + down, f32x8_set(1e-20));
+    /* what lights the foot of a wall is the ground before it, which has as little of the sky as this place */
+    const float hidden = 1 - seen.share, before = is_level(n) ? hidden * hidden : 0;
+    const F32x8 walls = _mm256_set1_ps(hidden) * f32x8_load(light->wall) +
+                        _mm256_set1_ps(seen.lit) * f32x8_load(light->sunlit_wall) -
+                        _mm256_set1_ps(seen.shaded) * f32x8_load(light->wall_by_sun) -
+                        _mm256_set1_ps(before) * f32x8_load(light->wall_by_sky);
+    const F32x8 left = f32x8_set(1) - _mm256_set1_ps(shade) * f32x8_load(light->level_sun);
+    f32x8_store(out->of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + down * left) / open);
+    f32x8_store(out->sunny, left);
+}
+
 bool sky_horizon_open(float (*factor)[hits_capacity], float (*below)[hits_capacity], const SkyHorizons *h,
                       const SkyHorizonLight *light, unsigned air_bands, const Hits *hits)
 {
-    bool        any = false;
-    const F32x8 sky = f32x8_load(light->sky), level = f32x8_load(light->level), wall = f32x8_load(light->wall);
-    const F32x8 sunlit = f32x8_load(light->sunlit_wall), level_sun = f32x8_load(light->level_sun);
-    const F32x8 by_sun = f32x8_load(light->wall_by_sun), by_sky = f32x8_load(light->wall_by_sky);
+    bool any = false;
     for (int i = 0; i < hits->count; i++) {
+        Factors f;
         if (hits->kind[i] != hit_ground && hits->kind[i] != hit_scenery) continue;
-        const float n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
-        const float z_m = (float)hits->p_enu[2][i];
-        Four        four;
-        if (!find_cells(&four, h, hits->p_enu[0][i], hits->p_enu[1][i], n)) continue;
-        const Seen seen = seen_from(&four, h, z_m, n, light, hits->kind[i] == hit_scenery);
-        float      of[8], shade = 0;
-        if (hits->kind[i] == hit_scenery && seen.own_high_m > 0)
-            shade = own_shade(light, &seen, n, z_m - ground_under(h, hits->p_enu[0][i], hits->p_enu[1][i], z_m));
-        if (seen.share == 1 && shade == 0) continue;
-        const F32x8 up = _mm256_set1_ps(0.5f * (1 + n[2])), down = _mm256_set1_ps(0.5f * (1 - n[2])) * level;
-        const F32x8 open = f32x8_max(sky * up + down, f32x8_set(1e-20));
-        /* what lights the foot of a wall is the ground before it, which has as little of the sky as this place */
-        const float hidden = 1 - seen.share, before = is_level(n) ? hidden * hidden : 0;
-        const F32x8 walls = _mm256_set1_ps(hidden) * wall + _mm256_set1_ps(seen.lit) * sunlit -
-                            _mm256_set1_ps(seen.shaded) * by_sun - _mm256_set1_ps(before) * by_sky;
-        const F32x8 left = f32x8_set(1) - _mm256_set1_ps(shade) * level_sun;
-        float       sunny[8];
-        f32x8_store(of, (up * f32x8_fma(_mm256_set1_ps(seen.share), sky, walls) + down * left) / open);
-        f32x8_store(sunny, left);
-        for (int b = 0; b < AIR_BAND_COUNT; b++)
-            if (air_bands >> b & 1) factor[b][i] *= of[b], below[b][i] *= sunny[b];
-        any |= shade > 0;
+        factors_of(&f, h, light, hits, i);
+        if (f.open) continue;
+        for (unsigned b = 0; b < AIR_BAND_COUNT; b++)
+            if (air_bands >> b & 1) factor[b][i] *= f.of[b];
+        if (!f.shaded) continue;
+        for (unsigned b = 0; b < AIR_BAND_COUNT; b++)
+            if (air_bands >> b & 1) below[b][i] *= f.sunny[b];
+        any = true;
     }
     return any;
 }

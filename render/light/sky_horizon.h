@@ -6,9 +6,9 @@
  * ground, the share of the sky's light that arrives (the sky as bright everywhere), and the share that buildings fill,
  * which shine as a mean wall of buildings that faces that way does under the sun and sky of the moment: what lights its
  * foot is the ground before it, in its shadow, as if that had no ends, and with as little of the sky as the hit.
- * Between cells without a wall sin^2 of the horizon is linear, as is the light that level ground loses; with one, the
- * light. Cost: four cells and one horizon a hit, and one more for each cell with a wall; 3.5 s of one processor to make
- * for 10,000 buildings in 6.5 km2.
+ * Between cells sin^2 of the horizon is linear, as is the light that level ground loses: of nearest walls, and of what
+ * they leave, each by the share of a sector that they fill. Cost: four cells and two horizons a hit, and a wall for
+ * each cell that has one; 3.5 s of one processor to make for 10,000 buildings in 6.5 km2.
  *
  * Error: the side of a building is known to an eighth of a metre (a quarter where buildings spread over more than 1 km,
  * half a cell where they do over more than 4 km); what stands behind the nearest wall's side is taken as if it stood in
