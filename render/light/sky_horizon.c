@@ -3,8 +3,9 @@
 
 #include "pitviper_simd.h"
 
+static const double before_cells = 1.2;
 /* behind_m: a place may be so far behind the nearest wall's plane, as below eaves, and is before it. */
-static const double before_cells = 1.2, behind_m = 0.6, least_away_m = 0.02;
+static const float behind_m = 0.6f, least_away_m = 0.02f, no_end_m = 1e3f;
 
 static const HorizonCell *cell_at(const SkyHorizons *h, int i, int j)
 {
@@ -15,7 +16,7 @@ static const HorizonCell *cell_at(const SkyHorizons *h, int i, int j)
 }
 
 /* Sums of four vectors. */
-static inline __m128 sums_of_four(F32x8 a, F32x8 b, F32x8 c, F32x8 d)
+static inline __m128 sums_over_ground(F32x8 a, F32x8 b, F32x8 c, F32x8 d)
 {
     const F32x8 halves = _mm256_hadd_ps(_mm256_hadd_ps(a, b), _mm256_hadd_ps(c, d));
     return _mm_add_ps(_mm256_castps256_ps128(halves), _mm256_extractf128_ps(halves, 1));
@@ -42,12 +43,12 @@ static bool is_level(const float n[3]) { return n[2] > 0.5f; }
 
 /* A place's surface, along sectors, and the sun. */
 typedef struct Facet {
-    F32x8  aside, behind, up, all; /* normal along them and against, and up; light of an open sky */
-    F32x8  before_m;               /* how far the cells are before the place along them */
-    F32x8  sunny, deep; /* of walls there that face us: cosine of the sun, and depth of their shadow in their heights */
-    bool   level;       /* rather than upright */
-    double sun_enu[2], per_sun_up;
-    const double (*facing_enu)[2];
+    F32x8 aside, behind, up, all; /* normal along them and against, and up; light of an open sky */
+    F32x8 before_m;               /* how far the cells are before the place along them */
+    F32x8 sunny, deep; /* of walls there that face us: cosine of the sun, and depth of their shadow in their heights */
+    bool  level;       /* rather than upright */
+    float sun_enu[2], per_sun_up;
+    const float (*facing_enu)[2];
 } Facet;
 
 /* What hides the sky of a place, by sectors: light that it takes, of that what walls in the sun show (times its cosine)
@@ -69,36 +70,45 @@ static inline bool is_open(const HorizonCell *cell)
  * know. */
 typedef struct Four {
     const HorizonCell *cell[4];
-    float              weight[4];
-    double             off_m[4][2];
+    float              weight[4], east_m[4], north_m[4];
 } Four;
 
 /* Cells that something covers say nothing where others do. */
-static void leave_covered(Four *f)
+static inline void leave_covered(Four *f)
 {
     float left = 0;
+    bool  covered = false;
+    for (int k = 0; k < 4; k++) covered = covered || f->cell[k]->covered;
+    if (!covered) return;
     for (int k = 0; k < 4; k++)
-        if (!f->cell[k] || !f->cell[k]->covered) left += f->weight[k];
-    if (!(left > 0.02f) || left == 1) return;
-    for (int k = 0; k < 4; k++) f->weight[k] = !f->cell[k] || !f->cell[k]->covered ? f->weight[k] / left : 0;
+        if (!f->cell[k]->covered) left += f->weight[k];
+    if (!(left > 0.02f)) return;
+    for (int k = 0; k < 4; k++) f->weight[k] = f->cell[k]->covered ? 0 : f->weight[k] / left;
 }
 
 /* A place somewhat before its surface, so that its cell is not that of what it is on; false: away from buildings. */
 static inline bool find_cells(Four *out, const SkyHorizons *h, double x_m, double y_m, const float n[3])
 {
-    const double x = (x_m - h->x0_m) / h->cell_m + before_cells * (double)n[0];
-    const double y = (y_m - h->y0_m) / h->cell_m + before_cells * (double)n[1];
-    if (!(x >= 0 && y >= 0 && x < h->tiles_x * horizon_tile_side && y < h->tiles_y * horizon_tile_side)) return false;
+    static const HorizonCell nothing = {.ground_m = 0};
+    const double             x = (x_m - h->x0_m) / h->cell_m + before_cells * (double)n[0];
+    const double             y = (y_m - h->y0_m) / h->cell_m + before_cells * (double)n[1];
+    const int                side = horizon_tile_side;
+    if (!(x >= 0 && y >= 0 && x < h->tiles_x * side && y < h->tiles_y * side)) return false;
     const int   i = (int)x, j = (int)y;
     const float u = (float)(x - i), v = (float)(y - j);
-    out->cell[0] = cell_at(h, i, j), out->cell[1] = cell_at(h, i + 1, j);
-    out->cell[2] = cell_at(h, i, j + 1), out->cell[3] = cell_at(h, i + 1, j + 1);
+    out->cell[0] = cell_at(h, i, j);
+    for (int k = 1; k < 4; k++) /* mostly of one tile */
+        out->cell[k] = out->cell[0] && i % side < side - 1 && j % side < side - 1
+                           ? out->cell[0] + (k & 1) + (k >> 1) * side
+                           : cell_at(h, i + (k & 1), j + (k >> 1));
+    if (!out->cell[0] && !out->cell[1] && !out->cell[2] && !out->cell[3]) return false;
     out->weight[0] = (1 - u) * (1 - v), out->weight[1] = u * (1 - v);
     out->weight[2] = (1 - u) * v, out->weight[3] = u * v;
-    if (!out->cell[0] && !out->cell[1] && !out->cell[2] && !out->cell[3]) return false;
+    const double east_m = x_m - h->x0_m - i * h->cell_m, north_m = y_m - h->y0_m - j * h->cell_m;
     for (int k = 0; k < 4; k++) {
-        out->off_m[k][0] = x_m - h->x0_m - (i + (k & 1)) * h->cell_m;
-        out->off_m[k][1] = y_m - h->y0_m - (j + (k >> 1)) * h->cell_m;
+        if (!out->cell[k]) out->cell[k] = &nothing;
+        out->east_m[k] = (float)(k & 1 ? east_m - h->cell_m : east_m);
+        out->north_m[k] = (float)(k >> 1 ? north_m - h->cell_m : north_m);
     }
     leave_covered(out);
     return true;
@@ -145,17 +155,62 @@ typedef struct Horizon {
     F32x8 close_high;                   /* how high what stands close is, in steps */
 } Horizon;
 
-/* A cell's nearest wall from a place: what of each sector it fills, and sin^2 of the elevation of its edge there. */
-typedef struct WallSeen {
-    F32x8 filled, sine2;
-    float lit, deep;
-} WallSeen;
+/* The nearest walls of four cells from a place, those that it sees: azimuth of their normals, and of their ends from
+ * there, left ones first, in sectors; tangent of the edge square before the place; cosine of the sun on them and depth
+ * of their shadows in their heights. */
+typedef struct Walls {
+    unsigned seen; /* bits of cells */
+    float    facing[4], end[8], edge[4], lit[4], deep[4];
+} Walls;
 
 /* Arc tangent of y / x, x > 0, in sectors; within 0.005. */
-static float sectors_of(float y, float x)
+static F32x8 sectors_of(F32x8 y, F32x8 x)
 {
-    const float a = fabsf(y), low = a < x ? a / x : x / a, arc = low * (1 + 0.3476f * (1 - low));
-    return copysignf(a < x ? arc : 2 - arc, y);
+    const F32x8 a = f32x8_abs(y), one = f32x8_set(1), low = f32x8_min(a, x) / f32x8_max(a, x);
+    const F32x8 arc = low * f32x8_fma(f32x8_set(0.3476), one - low, one), steep = f32x8_less(x, a);
+    const F32x8 size = f32x8_select(steep, f32x8_set(2) - arc, arc);
+    return f32x8_or(size, f32x8_and(y, f32x8_set(-0.0)));
+}
+
+/* How high the place is over the ground of each, m; 0 below. */
+static inline __m128 over_ground(const HorizonCell *const cell[4], float z_m)
+{
+    const __m128 over_m =
+        _mm_set1_ps(z_m) - _mm_setr_ps(cell[0]->ground_m, cell[1]->ground_m, cell[2]->ground_m, cell[3]->ground_m);
+    return _mm_max_ps(over_m, _mm_setzero_ps());
+}
+
+static inline void walls_of(Walls *out, const Four *four, float z_m, const Facet *f)
+{
+    __m128 row[4], far[4], n[2];
+    for (int k = 0; k < 4; k++) { /* HorizonCell's octets from `covered` on */
+        const F32x8 all = f32x8_of_ints(i32x8_of_bytes(&four->cell[k]->covered));
+        row[k] = _mm256_castps256_ps128(all), far[k] = _mm256_extractf128_ps(all, 1);
+    }
+    _MM_TRANSPOSE4_PS(row[0], row[1], row[2], row[3]); /* covered, facing, away, rise */
+    _MM_TRANSPOSE4_PS(far[0], far[1], far[2], far[3]); /* left, right */
+    for (int c = 0; c < 2; c++)
+        n[c] = _mm_setr_ps(f->facing_enu[four->cell[0]->wall_facing][c], f->facing_enu[four->cell[1]->wall_facing][c],
+                           f->facing_enu[four->cell[2]->wall_facing][c], f->facing_enu[four->cell[3]->wall_facing][c]);
+    const __m128 none = _mm_setzero_ps(), step_m = _mm_set1_ps((float)horizon_wall_step_m);
+    const __m128 east_m = _mm_loadu_ps(four->east_m), north_m = _mm_loadu_ps(four->north_m);
+    const __m128 away_m = row[2] * _mm_set1_ps((float)horizon_away_step_m) + n[0] * east_m + n[1] * north_m;
+    const __m128 rise_m = row[3] * step_m - over_ground(four->cell, z_m), right_m = n[0] * north_m - n[1] * east_m;
+    const __m128 seen = _mm_and_ps(_mm_and_ps(_mm_cmpgt_ps(row[3], none), _mm_cmpgt_ps(rise_m, none)),
+                                   _mm_cmpgt_ps(away_m, _mm_set1_ps(-behind_m)));
+    out->seen = (unsigned)_mm_movemask_ps(seen);
+    if (!out->seen) return;
+    const __m128 there_m = _mm_max_ps(away_m, _mm_set1_ps(least_away_m)), on = _mm_set1_ps(255);
+    __m128       end_m[2];
+    for (int e = 0; e < 2; e++)
+        end_m[e] = _mm_blendv_ps(far[e] * step_m, _mm_set1_ps(no_end_m), _mm_cmpge_ps(far[e], on));
+    const __m128 sun = n[0] * _mm_set1_ps(f->sun_enu[0]) + n[1] * _mm_set1_ps(f->sun_enu[1]);
+    f32x8_store(out->end, sectors_of(_mm256_set_m128(end_m[1] - right_m, none - end_m[0] - right_m),
+                                     _mm256_set_m128(there_m, there_m)));
+    _mm_storeu_ps(out->facing, row[1] * _mm_set1_ps(1.0f / 32));
+    _mm_storeu_ps(out->edge, rise_m / there_m);
+    _mm_storeu_ps(out->lit, _mm_max_ps(sun, none));
+    _mm_storeu_ps(out->deep, _mm_max_ps(none - sun, none) * _mm_set1_ps(f->per_sun_up));
 }
 
 /* sin^2 of the elevation of a wall's edge so many sectors aside. edge: its tangent square before the place. */
@@ -167,51 +222,42 @@ static F32x8 sine2_to(F32x8 sectors, F32x8 edge)
     return tangent2 / (f32x8_set(1) + tangent2);
 }
 
-static inline void wall_seen(WallSeen *out, const HorizonCell *cell, float z_m, const Facet *f, const double off_m[2])
+/* What of each sector a cell's wall fills, and there the mean of sin^2 of its edge's elevation. */
+static inline F32x8 wall_fills(F32x8 *sine2, const Walls *walls, int cell)
 {
-    static const float number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const F32x8        half = f32x8_set(0.5), none = f32x8_set(0);
-    const double      *n = f->facing_enu[cell->wall_facing], sun = n[0] * f->sun_enu[0] + n[1] * f->sun_enu[1];
-    const double       there_m = cell->wall_away * horizon_away_step_m + n[0] * off_m[0] + n[1] * off_m[1];
-    const double       over_m = fmax((double)(z_m - cell->ground_m), 0);
-    const double       rise_m = cell->wall_rise * horizon_wall_step_m - over_m;
-    *out = (WallSeen){none, none, (float)fmax(sun, 0), (float)(fmax(-sun, 0) * f->per_sun_up)};
-    if (!(rise_m > 0 && there_m > -behind_m)) return;
-    const float  away_m = (float)fmax(there_m, least_away_m), right_m = (float)(n[0] * off_m[1] - n[1] * off_m[0]);
-    const double left = cell->wall_left == 255 ? 1e3 : cell->wall_left * horizon_wall_step_m;
-    const double right = cell->wall_right == 255 ? 1e3 : cell->wall_right * horizon_wall_step_m;
-    const F32x8  first = _mm256_set1_ps(sectors_of(-(float)left - right_m, away_m));
-    const F32x8  last = _mm256_set1_ps(sectors_of((float)right - right_m, away_m));
+    static const float number[8] = {-4, -3, -2, -1, 0, 1, 2, 3};
+    const F32x8        half = f32x8_set(0.5), edge = _mm256_set1_ps(walls->edge[cell]);
     /* sectors' middles from where the wall is square before the place, -4 .. 4 */
-    F32x8 at = f32x8_load(number) - f32x8_set(cell->wall_facing / 32.0 + 4);
+    F32x8 at = f32x8_load(number) - _mm256_set1_ps(walls->facing[cell]);
     at = at - f32x8_set(8) * f32x8_floor(f32x8_fma(at, f32x8_set(0.125), half));
-    const F32x8 from = f32x8_max(at - half, first), to = f32x8_min(at + half, last);
-    out->filled = f32x8_clamp(to - from, 0, 1);
-    const F32x8 mid = half * (from + to), aside = f32x8_set(0.28867513) * out->filled,
-                edge = f32x8_set(rise_m / (double)away_m);
-    out->sine2 = half * (sine2_to(mid - aside, edge) + sine2_to(mid + aside, edge)); /* Gauss's two places */
+    const F32x8 from = f32x8_max(at - half, _mm256_set1_ps(walls->end[cell]));
+    const F32x8 to = f32x8_min(at + half, _mm256_set1_ps(walls->end[4 + cell]));
+    const F32x8 filled = f32x8_clamp(to - from, 0, 1);
+    const F32x8 mid = half * (from + to), aside = f32x8_set(0.28867513) * filled; /* Gauss's two places */
+    *sine2 = half * (sine2_to(mid - aside, edge) + sine2_to(mid + aside, edge));
+    return filled;
 }
 
 /* Between cells sin^2 is linear, as is the light that level ground loses. */
 static inline void horizon_of(Horizon *out, const Four *four, float z_m, const Facet *f, bool own)
 {
     const F32x8 none = f32x8_set(0);
+    Walls       walls;
+    walls_of(&walls, four, z_m, f);
     *out = (Horizon){none, none, none, none, none, none, none, none};
     for (int k = 0; k < 4; k++) {
         const HorizonCell *cell = four->cell[k];
-        if (!cell || !(four->weight[k] > 0)) continue;
-        const F32x8 weight = _mm256_set1_ps(four->weight[k]);
+        const F32x8        weight = _mm256_set1_ps(four->weight[k]);
         const F32x8 s = f32x8_of_ints(i32x8_of_bytes(cell->slope)), up = f32x8_of_ints(i32x8_of_bytes(cell->height));
         F32x8       rest = weight, close = f32x8_greater(s, f32x8_set(0.24 * 255));
-        if (cell->wall_rise > 0) {
-            WallSeen wall;
-            wall_seen(&wall, cell, z_m, f, four->off_m[k]);
-            const F32x8 filled = weight * wall.filled;
+        if (walls.seen >> k & 1) {
+            F32x8       edge2;
+            const F32x8 fills = wall_fills(&edge2, &walls, k), filled = weight * fills;
             rest = rest - filled, out->walls = out->walls + filled;
-            out->wall_sine2 = f32x8_fma(filled, wall.sine2, out->wall_sine2);
-            out->lit = f32x8_fma(filled, _mm256_set1_ps(wall.lit), out->lit);
-            out->deep = f32x8_fma(filled, _mm256_set1_ps(wall.deep), out->deep);
-            close = f32x8_or(close, f32x8_greater(wall.filled, f32x8_set(0.5)));
+            out->wall_sine2 = f32x8_fma(filled, edge2, out->wall_sine2);
+            out->lit = f32x8_fma(filled, _mm256_set1_ps(walls.lit[k]), out->lit);
+            out->deep = f32x8_fma(filled, _mm256_set1_ps(walls.deep[k]), out->deep);
+            close = f32x8_or(close, f32x8_greater(fills, f32x8_set(0.5)));
         }
         const F32x8 sine2 = rest * (s * s);
         out->rest = out->rest + rest, out->sine2 = out->sine2 + sine2, out->high = f32x8_fma(sine2, up, out->high);
@@ -255,14 +301,14 @@ static inline void facet(Facet *f, const SkyHorizons *h, const float n[3], const
     f->sunny = f->deep = none;
     f->level = is_level(n);
     f->sun_enu[0] = f->sun_enu[1] = f->per_sun_up = 0;
-    f->facing_enu = (const double(*)[2])h->facing_enu;
+    f->facing_enu = (const float(*)[2])h->facing_enu;
     if (!light) return;
     const F32x8 sun_east = _mm256_set1_ps(light->sun_enu[0]), sun_north = _mm256_set1_ps(light->sun_enu[1]);
     const F32x8 along = f32x8_fma(sun_east, east, sun_north * north);
-    for (int c = 0; c < 2; c++) f->sun_enu[c] = (double)light->sun_enu[c];
-    f->per_sun_up = light->sun_enu[2] > 0.02f ? 1 / (double)light->sun_enu[2] : 0;
+    for (int c = 0; c < 2; c++) f->sun_enu[c] = light->sun_enu[c];
+    f->per_sun_up = light->sun_enu[2] > 0.02f ? 1 / light->sun_enu[2] : 0;
     f->sunny = f32x8_max(none - along, none);
-    f->deep = f32x8_max(along, none) * f32x8_set(f->per_sun_up);
+    f->deep = f32x8_max(along, none) * _mm256_set1_ps(f->per_sun_up);
 }
 
 /* light: NULL: the sun is not asked for. own: what is behind the place is. */
@@ -273,22 +319,19 @@ static inline Seen seen_from(const Four *four, const SkyHorizons *h, float z_m, 
     Hidden  all;
     Horizon horizon;
     Facet   f;
-    float   ground_m = 0, known = 0, sum[4], more[4];
+    float   over_m = 0, sum[4], more[4];
     bool    hides = false;
-    for (int k = 0; k < 4; k++) {
-        if (!four->cell[k]) continue;
-        hides = hides || !is_open(four->cell[k]);
-        ground_m = fmaf(four->weight[k], four->cell[k]->ground_m, ground_m), known += four->weight[k];
-    }
-    if (!hides || !(known > 0)) return seen;
+    for (int k = 0; k < 4; k++) hides = hides || !is_open(four->cell[k]);
+    if (!hides) return seen;
+    for (int k = 0; k < 4; k++) over_m = fmaf(four->weight[k], z_m - four->cell[k]->ground_m, over_m);
     facet(&f, h, n, light);
     horizon_of(&horizon, four, z_m, &f, own);
-    hidden_by(&all, &horizon, z_m - ground_m / known, &f, light != NULL);
-    _mm_storeu_ps(sum, sums_of_four(all.light, all.lit, all.shaded, f.all));
+    hidden_by(&all, &horizon, over_m, &f, light != NULL);
+    _mm_storeu_ps(sum, sums_over_ground(all.light, all.lit, all.shaded, f.all));
     if (sum[3] > 1e-4f) seen.share = 1 - sum[0] / sum[3], seen.lit = sum[1] / sum[3], seen.shaded = sum[2] / sum[3];
     if (own) {
         const F32x8 none = f32x8_set(0);
-        _mm_storeu_ps(more, sums_of_four(f.behind, f.behind * all.close_high, none, none));
+        _mm_storeu_ps(more, sums_over_ground(f.behind, f.behind * all.close_high, none, none));
         if (more[0] > 0.1f && sum[3] > 1e-4f) seen.own_high_m = more[1] / more[0];
     }
     return seen;

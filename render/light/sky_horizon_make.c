@@ -421,7 +421,7 @@ Status sky_horizons_create(SkyHorizons **out, const SceneryTracer *tracer, const
         return status;
     }
     for (int k = 0; k < 256; k++)
-        h->facing_enu[k][0] = sin(k * pi_rad / 128), h->facing_enu[k][1] = cos(k * pi_rad / 128);
+        h->facing_enu[k][0] = (float)sin(k * pi_rad / 128), h->facing_enu[k][1] = (float)cos(k * pi_rad / 128);
     *out = h;
     return STATUS_OK;
 }

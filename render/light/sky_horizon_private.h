@@ -19,6 +19,7 @@ typedef struct HorizonCell {
     uint8_t wall_away;             /* of its plane, horizon_away_step_m */
     uint8_t wall_rise;             /* above ground_m, horizon_wall_step_m; 0: no wall is near */
     uint8_t wall_left, wall_right; /* how far it goes, as seen from here, horizon_wall_step_m; 255: on */
+    uint8_t spare[2];              /* eight octets from `covered` on */
 } HorizonCell;
 
 struct SkyHorizons {
@@ -27,7 +28,7 @@ struct SkyHorizons {
     int         *tile_of; /* [tiles_x tiles_y]: -1: none */
     HorizonCell *cell;    /* [tiles][horizon_tile_cells] */
     double       wall_rho[optical_channel_count];
-    double       facing_enu[256][2]; /* by HorizonCell.wall_facing */
+    float        facing_enu[256][2]; /* by HorizonCell.wall_facing */
 };
 
 #endif
