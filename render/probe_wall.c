@@ -21,22 +21,12 @@ void wall_probe_close(void *state)
     free(p);
 }
 
-static Status open_constructions(Constructions *out)
-{
-    char path[2][512];
-    if (etc_path(path[0], sizeof path[0], "constructions.csv") &&
-        etc_path(path[1], sizeof path[1], "construction_layers.csv"))
-        return constructions_open(out, path[0], path[1]);
-    log_error("probe: path of the tables is too long; set PITVIPER_ETC to a shorter one");
-    return STATUS_BAD_VALUE;
-}
-
 Status wall_probe_open(void **state, int argc, char **argv)
 {
     WallProbe *p = calloc(1, sizeof *p);
     if (!p) return STATUS_NO_MEMORY;
     Status status = probe_day_open(&p->day, argc, argv);
-    if (status == STATUS_OK) status = open_constructions(&p->constructions);
+    if (status == STATUS_OK) status = constructions_open_etc(&p->constructions);
     if (status == STATUS_OK) *state = p;
     else wall_probe_close(p);
     return status;

@@ -16,17 +16,6 @@ static void wind_there(double wind_enu_mps[3], double unix_s, const void *user)
     wind_enu_mps[2] = 0;
 }
 
-static Status open_constructions(Constructions *out)
-{
-    char path[512], layers[512];
-    if (!etc_path(path, sizeof path, "constructions.csv") ||
-        !etc_path(layers, sizeof layers, "construction_layers.csv")) {
-        log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
-        return STATUS_BAD_VALUE;
-    }
-    return constructions_open(out, path, layers);
-}
-
 Status world_warm_scenery(World *world, const Scenery *scenery, const HeatConfig *config, const char *isa, Pool *pool)
 {
     char              path[512];
@@ -36,7 +25,7 @@ Status world_warm_scenery(World *world, const Scenery *scenery, const HeatConfig
     const int         facets = c.heat.facets;
     Status            status = constructions && ground ? STATUS_OK : STATUS_NO_MEMORY;
     if (!etc_path(path, sizeof path, "ground_heat.csv")) status = STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = open_constructions(constructions);
+    if (status == STATUS_OK) status = constructions_open_etc(constructions);
     if (status == STATUS_OK) status = ground_kinds_open(ground, path, &world->materials);
     if (status == STATUS_OK) {
         c.heat = *config;

@@ -169,6 +169,16 @@ Status constructions_open(Constructions *out, const char *path, const char *laye
     return status;
 }
 
+Status constructions_open_etc(Constructions *out)
+{
+    char path[2][512];
+    if (etc_path(path[0], sizeof path[0], "constructions.csv") &&
+        etc_path(path[1], sizeof path[1], "construction_layers.csv"))
+        return constructions_open(out, path[0], path[1]);
+    log_error("heat: path of the tables is too long; set PITVIPER_ETC to a shorter one");
+    return STATUS_BAD_VALUE;
+}
+
 int constructions_find(const Constructions *of, const char *part, HeatRole role, const char *material)
 {
     for (int k = 0; k < of->count - 1; k++) {

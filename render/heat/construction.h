@@ -59,6 +59,7 @@ typedef struct Constructions {
 
 /* layers_path: etc/construction_layers.csv. Failures are logged with file, line, column and what is accepted. */
 Status constructions_open(Constructions *out, const char *path, const char *layers_path);
+Status constructions_open_etc(Constructions *out); /* of the folder etc */
 /* Row of a part: the first whose part and role are its own, or any, and whose material is a piece of its material's
  * name (brick: of brick_red too). The last fits all. */
 int constructions_find(const Constructions *of, const char *part, HeatRole role, const char *material);

@@ -187,13 +187,6 @@ static int corners_of_walls(double (*corner)[2], const Walls *walls)
     return walls->count;
 }
 
-static double area_of(const double (*p)[2], int n)
-{
-    double sum = 0;
-    for (int k = 0; k < n; k++) sum += p[k][0] * p[(k + 1) % n][1] - p[(k + 1) % n][0] * p[k][1];
-    return 0.5 * sum;
-}
-
 /* The direction that most of the boundary has, up to right angles. */
 static void find_direction(Outline *out, const Boundary *b, const int *corner, int corners)
 {
@@ -242,7 +235,8 @@ static bool take_walls(Outline *out, const Boundary *b, const int *corner, int c
     out->along_rad = walls.along_rad;
     out->corners = corners_of_walls(out->corner, &walls);
     free(walls.wall);
-    return out->corners >= 3 && fabs(area_of((const double(*)[2])out->corner, out->corners) / cells - 1) < most_off;
+    return out->corners >= 3 &&
+           fabs(culture_area_m2((const double(*)[2])out->corner, out->corners) / cells - 1) < most_off;
 }
 
 bool outline_of_cells(Outline *out, const int32_t *of, int nx, int ny, int32_t number, size_t first)
@@ -281,7 +275,7 @@ bool outline_of_cells(Outline *out, const int32_t *of, int nx, int ny, int32_t n
         for (int k = 0; k < corners; k++)
             for (int c = 0; c < 2; c++) out->corner[k][c] = step[corner[k]][c];
         out->corners = corners;
-        good = area_of((const double(*)[2])out->corner, corners) > 0.5 * cells;
+        good = culture_area_m2((const double(*)[2])out->corner, corners) > 0.5 * cells;
     }
 done:
     free(step), free(corner), free(b.is_corner);
