@@ -23,6 +23,7 @@ heard_by loop 'listening on'
 PITVIPER_MEMORY=pitviper_threads_$$ PITVIPER_PORT=$((port + 1)) python3 "$(dirname "$0")/../tools/loop_recogniser.py" 1:3001:21 \
     >"$tmp/recogniser.out" 2>&1 &
 recogniser=$!
+heard_by loop 'run: ready'
 # answers to frames that there are not, as fast as they go, and the key, until the run ends
 python3 - $((port + 1)) $((port + 2)) "${node[loop]}" <<'END' &
 import os, socket, sys, time
