@@ -3,7 +3,10 @@
 
 #include <assert.h>
 
-CigiSessionConfig cigi_session_default_config(void) { return (CigiSessionConfig){.repeat_s = 0.25, .silent_s = 5}; }
+CigiSessionConfig cigi_session_default_config(void)
+{
+    return (CigiSessionConfig){.repeat_s = 0.25, .silent_s = 5, .ahead_s = 600};
+}
 
 int64_t cigi_unwrap(int64_t last_ticks, uint32_t stamp)
 {
@@ -122,7 +125,7 @@ static bool answers_older(const CigiSession *s, const CigiIgControl *c)
     return c->last_ig_frame != 0 && number_order(c->last_ig_frame, s->ig_frame) < 0;
 }
 
-/* Takes the host's time; false: the frame has none, or one before the last. */
+/* Takes the host's time; false: the frame has none, or one before the last, or far after it. */
 static bool take_time(CigiSession *s, const CigiIgControl *c)
 {
     int64_t ticks;
@@ -130,6 +133,7 @@ static bool take_time(CigiSession *s, const CigiIgControl *c)
         ticks = s->timed ? cigi_unwrap(s->ticks, c->timestamp) : (int64_t)c->timestamp;
     } else {
         s->events.unstamped++;
+        s->news |= CIGI_NEWS_UNSTAMPED;
         if (!(s->config.unstamped_ticks > 0)) return false;
         ticks = s->timed ? s->ticks + llround(s->config.unstamped_ticks) : 0;
     }
@@ -138,6 +142,12 @@ static bool take_time(CigiSession *s, const CigiIgControl *c)
         s->news |= CIGI_NEWS_TIME_BACK;
         return false;
     }
+    if (s->timed && !s->rested && (double)(ticks - s->ticks) > s->config.ahead_s * cigi_ticks_per_s) {
+        s->events.time_ahead++;
+        s->news |= CIGI_NEWS_TIME_AHEAD;
+        return false;
+    }
+    s->rested = false;
     s->ticks = ticks;
     s->stamp = (uint32_t)(uint64_t)ticks;
     return s->timed = true;
@@ -167,6 +177,7 @@ static CigiEvent new_frame(CigiSession *s, const CigiIgControl *c)
         s->news |= CIGI_NEWS_MODE;
     }
     s->waits = s->to_send = false;
+    s->rested |= s->mode == cigi_mode_standby;
     const bool makes = s->mode != cigi_mode_standby && take_time(s, c);
     if (makes) s->events.frames++;
     else s->events.idle++;

@@ -19,11 +19,14 @@ enum { cigi_datagram_octets = 1472 }; /* what Ethernet carries unfragmented over
 typedef struct CigiSessionConfig {
     double repeat_s; /* Start of Frame is sent again after so long without an answer; > 0 */
     double silent_s; /* a host that is silent for so long has stopped; > 0 */
+    /* A frame further after the last one with a time has no picture, unless the host was in mode Reset/Standby between:
+     * a stamp that is wrong by hours is not to be lived through. > 0 */
+    double ahead_s;
     /* From frame to frame of a host whose time stamps are not valid; 0: its frames have no picture. */
     double unstamped_ticks;
 } CigiSessionConfig;
 
-/* A quarter of a second, five seconds, refused. */
+/* A quarter of a second, five seconds, ten minutes, refused. */
 CigiSessionConfig cigi_session_default_config(void);
 
 /* What a datagram of the host means. */
@@ -40,12 +43,14 @@ typedef enum CigiEvent {
 
 /* What else is new with it, a set. */
 enum {
-    CIGI_NEWS_FIRST = 1,      /* the first answer of all */
-    CIGI_NEWS_MODE = 2,       /* another mode than before */
-    CIGI_NEWS_LOST = 4,       /* frames of the host between the last and this one did not arrive */
-    CIGI_NEWS_RESTARTED = 8,  /* the host began anew: its frames are counted, and its time is taken, from here */
-    CIGI_NEWS_BACK = 16,      /* it was silent, and is heard again */
-    CIGI_NEWS_TIME_BACK = 32, /* its time went back: the frame is not made */
+    CIGI_NEWS_FIRST = 1,       /* the first answer of all */
+    CIGI_NEWS_MODE = 2,        /* another mode than before */
+    CIGI_NEWS_LOST = 4,        /* frames of the host between the last and this one did not arrive */
+    CIGI_NEWS_RESTARTED = 8,   /* the host began anew: its frames are counted, and its time is taken, from here */
+    CIGI_NEWS_BACK = 16,       /* it was silent, and is heard again */
+    CIGI_NEWS_TIME_BACK = 32,  /* its time went back: the frame is not made */
+    CIGI_NEWS_TIME_AHEAD = 64, /* its time went ahead by more than ahead_s: the frame is not made */
+    CIGI_NEWS_UNSTAMPED = 128, /* its time stamp is not valid */
 };
 
 typedef struct CigiSessionCounters {
@@ -57,6 +62,7 @@ typedef struct CigiSessionCounters {
     uint64_t restarts, silences;
     uint64_t unstamped;  /* frames without a valid time */
     uint64_t time_back;  /* frames whose time was before the last one's */
+    uint64_t time_ahead; /* frames whose time was further after the last one's than ahead_s */
     uint64_t unanswered; /* answers to requests that did not fit into a datagram */
 } CigiSessionCounters;
 
@@ -69,6 +75,7 @@ typedef struct CigiSession {
     bool                reads;                       /* its packets are to be used */
     bool                heard, timed, silent, waits; /* waits: Start of Frame is sent, and not answered yet */
     bool                to_send;
+    bool                rested; /* in mode Reset/Standby since the last frame with a time */
     uint8_t             mode, status;
     uint32_t            host_frame, ig_frame, stamp;
     int64_t             ticks; /* of the last frame with a time, unwrapped */

@@ -407,6 +407,16 @@ static Status fly_by(Scenario *scenario, const Options *o)
     return scenario_check(scenario);
 }
 
+/* Each flight with frames has a node, whose seed is the scenario's. */
+static Status check_seeds(const Scenario *scenario, const Options *o)
+{
+    static const long long most = 2147483647; /* as `seed` of a node */
+    if (!fly_loop_asked(&o->loop) || scenario->seed + o->seeds - 1 <= most) return STATUS_OK;
+    log_error("fly: seed: flights with frames have seeds up to %lld, those of a node: not %lld", most,
+              (long long)scenario->seed + o->seeds - 1);
+    return STATUS_BAD_VALUE;
+}
+
 int fly_command(int argc, char **argv)
 {
     Options   o = {.seeds = 1, .loop = {.limit_s = 2, .start_s = 30}};
@@ -423,7 +433,8 @@ int fly_command(int argc, char **argv)
         }
     stop_by_signals();
     if (fly_loop_asked(&o.loop)) thread_flush_denormals();
-    status = fly_by(&scenario, &o);
+    status = check_seeds(&scenario, &o);
+    if (status == STATUS_OK) status = fly_by(&scenario, &o);
     if (status == STATUS_OK && o.plot) status = overwrite_file("fly", o.plot, o.overwrite);
     if (status == STATUS_OK) status = fly(&scenario, &o);
     if (status == STATUS_NO_MEMORY) log_error("fly: out of memory");

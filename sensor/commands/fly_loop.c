@@ -212,7 +212,7 @@ static Status node_options(Options *out, Flying *f, const Cast *cast)
     dis_entity_id_text(aim, f->loop->target);
     snprintf(own[n++], text_size, "exercise.host=observer");
     snprintf(own[n++], text_size, "exercise.aim=%s", aim);
-    snprintf(own[n++], text_size, "seed=%lld", cast->scenario->seed % 2147483648);
+    snprintf(own[n++], text_size, "seed=%lld", cast->scenario->seed);
     snprintf(own[n++], text_size, "sensor.rate_hz=20");
     if (flight->missile.field_rad > 0)
         snprintf(own[n++], text_size, "sensor.hfov_deg=%.6g", flight->missile.field_rad / rad_per_deg);
@@ -382,6 +382,7 @@ Status fly_loop_seed(FlyLoopCounts *counts, Cast *cast, Scenario *scenario, cons
     if (status == STATUS_OK) status = write(cast, f.log, shown_as);
     if (shown) log_set_level(LOG_WARN); /* standard output is the table's; run.json has the choices */
     if (status == STATUS_OK) status = run_node(&f, cast);
+    loop_sights_say_refused(loop);
     if (shown) log_set_level(LOG_INFO);
     if (status == STATUS_OK && loop->ended) status = conclude(&f);
     else if (status == STATUS_OK && !stop_asked()) {

@@ -302,7 +302,11 @@ enum { config_paths_size = 4096 };
         "a side; or as large as there is room, by nearest neighbours") \
     ROW(SWITCH, projector., vsync, true, "on|off", "frames are flipped at the display's refresh; off: at once") \
     ROW(INT, projector., wait_ms, 0, 0, 10000, "ms", \
-        "how long a frame is held up at most until it is flipped, as a host in step (exercise.cigi) may want; 0: never")
+        "how long a frame is held up at most until it is flipped, as a host in step (exercise.cigi) may want; 0: never") \
+    ROW(CHOICE, projector., gamepad, PROJECTOR_NO_GAMEPAD, ProjectorGamepad, \
+        (PROJECTOR_NO_GAMEPAD, "none")(PROJECTOR_LEVEL, "level")(PROJECTOR_BODY, "body"), \
+        "a gamepad of this machine turns the eye of a live node, by poses to exercise.head: from north and level, or from " \
+        "the axes of what carries the eye")
 
 #define CONFIG_RECORD(ROW) \
     ROW(PATH, record., path, "", 1024, "pcapng file to which `run` records all received datagrams; empty: none")

@@ -27,6 +27,12 @@ Status projector_check(const Config *config)
                   config_where(config, "projector.window"), config->projector.window);
         good = false;
     }
+    if (config->projector.gamepad != PROJECTOR_NO_GAMEPAD && !(*config->projector.band && *config->exercise.head)) {
+        log_error("config: %sprojector.gamepad: the projector's window takes it, and exercise.head its poses: with "
+                  "--projector BAND and --head ADDRESS:PORT, for example 127.0.0.1:5010",
+                  config_where(config, "projector.gamepad"));
+        good = false;
+    }
 #ifndef PITVIPER_SDL
     if (*config->projector.band) {
         log_error(

@@ -181,6 +181,31 @@ static void time_that_goes_back_or_is_missing(void **state)
     CHECK(cigi_session_time_s(&s) == 0.03 && s.events.unstamped == 2);
 }
 
+/* Ten minutes and a tick more are too far, and time stays; less, and anything after Reset/Standby, is not. */
+static void time_that_goes_far_ahead(void **state)
+{
+    (void)state;
+    enum { most = 600 * 100000, hour = 3600 * 100000 };
+    uint32_t frame = 1;
+    begin();
+    CHECK(control(frame, 7 * (uint32_t)hour, 0) == CIGI_DUE); /* the first is as it is */
+    cigi_session_delivered(&s, now_s);
+    for (int i = 0; i < 3; i++) {
+        const uint32_t far[] = {7u * hour + most + 1, 8u * hour, 11u * hour};
+        CHECK(control(++frame, far[i], 0) == CIGI_IDLE && cigi_session_news(&s) == CIGI_NEWS_TIME_AHEAD);
+        cigi_session_delivered(&s, now_s);
+        CHECK(cigi_session_time_s(&s) == 7 * 3600 && s.events.time_ahead == (uint64_t)i + 1);
+    }
+    CHECK(control(++frame, 7u * hour + most, 0) == CIGI_DUE && cigi_session_time_s(&s) == 7 * 3600 + 600);
+    cigi_session_delivered(&s, now_s);
+    CHECK(cigi_session_receive(&s, buffer, write_control(++frame, 0, cigi_mode_standby, 0), now_s) == CIGI_IDLE);
+    cigi_session_delivered(&s, now_s);
+    CHECK(control(++frame, 9u * hour, 0) == CIGI_DUE && cigi_session_time_s(&s) == 9 * 3600);
+    cigi_session_delivered(&s, now_s);
+    CHECK(control(++frame, 10u * hour, 0) == CIGI_IDLE); /* and that once */
+    CHECK(s.events.time_ahead == 4 && s.events.restarts == 0);
+}
+
 static void answers_fit_into_a_datagram(void **state)
 {
     (void)state;
@@ -233,6 +258,7 @@ int main(void)
         cmocka_unit_test(a_host_that_begins_anew),
         cmocka_unit_test(time_goes_on_where_its_bits_end),
         cmocka_unit_test(time_that_goes_back_or_is_missing),
+        cmocka_unit_test(time_that_goes_far_ahead),
         cmocka_unit_test(answers_fit_into_a_datagram),
         cmocka_unit_test(what_is_refused_changes_nothing),
     };

@@ -46,6 +46,8 @@ static void end(void)
     close(udp);
 }
 
+static bool stamped = true; /* what the host says is with a valid time */
+
 /* The host's next datagram: IG Control and what is given, 0 or 1 packet. */
 static void say_as(uint8_t mode, double t_s, const CigiPacket *more)
 {
@@ -53,7 +55,7 @@ static void say_as(uint8_t mode, double t_s, const CigiPacket *more)
         .sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK), .sin_port = htons((uint16_t)node_port)};
     const CigiPacket control = {.id = cigi_ig_control,
                                 .of.ig_control = {.mode = mode,
-                                                  .timestamp_valid = true,
+                                                  .timestamp_valid = stamped,
                                                   .host_frame = ++frame_number,
                                                   .timestamp = (uint32_t)llround(t_s * cigi_ticks_per_s)}};
     uint8_t          out[128];
@@ -134,6 +136,45 @@ static void a_host_that_begins_anew_before_the_last_frame_ends_it(void **state)
         if (later) CHECK(frame.number == 1 && frame.t_s == 8.5);
         end();
     }
+}
+
+static int  warnings;
+static void count_warnings(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    if (level == LOG_WARN && strstr(line, "cigi: the host")) warnings++;
+}
+
+/* Frames without a valid time, times that go back, and such that go ahead by an hour: each is said once, however many
+ * come, and whatever modes are between; a host with valid stamps is not complained of. */
+static void what_is_wrong_with_time_is_said_once(void **state)
+{
+    (void)state;
+    enum { unstamped, back, ahead, well };
+    FrameTime frame;
+    log_set_sink(count_warnings, NULL);
+    for (int what = unstamped; what <= well; what++) {
+        begin(0, INFINITY);
+        warnings = 0;
+        say(100, &eye);
+        CHECK(wait_for(&frame, false) == CLOCK_DUE);
+        c.clock.done(&c.clock, &frame);
+        for (int i = 0; i < 12; i++) {
+            stamped = what != unstamped;
+            say_as(i % 4 == 3 ? cigi_mode_standby : cigi_mode_operate,
+                   what == back    ? 50
+                   : what == ahead ? 3800
+                                   : 100,
+                   &eye);
+            stamped = true;
+            const ClockAnswer answer = wait_for(&frame, true);
+            CHECK(answer == (what == well && i % 4 != 3 ? CLOCK_DUE : CLOCK_EARLY) || (what == ahead && i >= 4));
+            if (answer == CLOCK_DUE) c.clock.done(&c.clock, &frame);
+        }
+        CHECK(warnings == (what != well));
+        end();
+    }
+    log_set_sink(NULL, NULL);
 }
 
 /* One answer to a request, behind the next Start of Frame. */
@@ -326,6 +367,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_are_those_of_the_host),
         cmocka_unit_test(a_host_that_begins_anew_before_the_last_frame_ends_it),
+        cmocka_unit_test(what_is_wrong_with_time_is_said_once),
         cmocka_unit_test(heights_are_those_of_the_ground),
         cmocka_unit_test(lines_of_sight_end_at_the_ground),
         cmocka_unit_test(requests_with_a_period_stand),

@@ -122,8 +122,9 @@ static void fly(FlightLoop *l, const Engagement *e)
         flight_loop_tick(l, &scene, t_s, target);
         if (tick < 200 || tick % 10 != 0 || l->ended) continue;
         look(&l->eye, l, e, t_s);
+        loop_sights_frame(l, frame);
         if (l->source == LOOP_ANSWERS) answer(l, &l->eye, frame);
-        loop_sights_frame(l, frame++);
+        frame++;
     }
 }
 
@@ -204,6 +205,44 @@ static void answers_are_taken_or_refused(void **state)
     drop(l);
 }
 
+/* More answers than the loop keeps, to frames that were never made, before and after a true one, and again and again to
+ * its own: it is taken all the same, and they are counted. */
+static void answers_that_were_not_asked_for_take_no_place(void **state)
+{
+    (void)state;
+    enum { many = 3 * loop_waiting_most };
+    Missile       m;
+    Engagement    e = engagement(&m);
+    FlightLoop   *l = loop_of(&e, &m, LOOP_ANSWERS);
+    static Answer empty;
+    double        target[3];
+    target_at(target, &e, 2);
+    flight_loop_tick(l, &(LoopScene){.ground_at = no_ground}, 2, target);
+    for (int i = 0; i < 2; i++) {
+        const int frame = 7 + 3 * i; /* as where frames between were dropped */
+        for (int k = 0; k < many; k++) {
+            empty = (Answer){.frame = 11 + k};
+            loop_sights_taken(l, &empty);
+        }
+        look(&l->eye, l, &e, 2);
+        l->eye.t_s = 2 + 0.1 * i;
+        loop_sights_frame(l, frame);
+        answer(l, &l->eye, frame);
+        for (int k = 0; k < many; k++) {
+            empty = (Answer){.frame = k % 2 ? frame : 8};
+            loop_sights_taken(l, &empty);
+        }
+    }
+    CHECK(l->unasked == 3 * many && l->late == 0);
+    CHECK(loop_sights_settle(l, 9)); /* without a wait */
+    CHECK(l->verdicts[LOOP_SEEN] == 2 && l->count == 0);
+    flight_loop_next(l); /* answers to the missile before are late, not unasked */
+    empty.frame = 10;
+    loop_sights_taken(l, &empty);
+    CHECK(l->late == 1 && l->unasked == 3 * many);
+    drop(l);
+}
+
 static void the_recording_is_the_flight(void **state)
 {
     (void)state;
@@ -232,6 +271,7 @@ int main(void)
 {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(true_sights_fly_the_engagement), cmocka_unit_test(answers_fly_the_engagement),
-        cmocka_unit_test(answers_are_taken_or_refused), cmocka_unit_test(the_recording_is_the_flight)};
+        cmocka_unit_test(answers_are_taken_or_refused), cmocka_unit_test(answers_that_were_not_asked_for_take_no_place),
+        cmocka_unit_test(the_recording_is_the_flight)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

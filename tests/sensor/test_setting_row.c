@@ -134,7 +134,7 @@ static void words_of_the_program_come_back(void **state)
         }
         *choices = 0;
     }
-    assert_int_equal(words, 71);
+    assert_int_equal(words, 74);
     config_text(text, sizeof text, &config);
     CHECK(strstr(text, "sensor.antialias=adaptive\n") && strstr(text, "terrain.woods=on\n"));
     free(list);

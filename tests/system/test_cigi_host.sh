@@ -6,7 +6,7 @@ needs python3 python3 -c 1
 host=$(dirname "$0")/../tools/cigi_host.py
 
 for order in "" --little; do
-    for scenario in packets lockstep lost_answers repeats jumps runs_ahead garbage restarts wraps time_back silent; do
+    for scenario in packets lockstep lost_answers repeats jumps runs_ahead garbage restarts wraps time_back time_ahead silent; do
         # shellcheck disable=SC2086
         check "$scenario $order" python3 "$host" "$build/tests/cigi_ig" $scenario 5 $order
     done

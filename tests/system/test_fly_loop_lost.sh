@@ -49,6 +49,8 @@ refused "a gimbal of its own" 1 "gimbal_lag_s.*leave it out" "$s" --frames "$tmp
 refused "a mount" 1 "sensor.mount_yaw_deg.*leave it out" "$s" --frames "$tmp/x" -- --set sensor.mount_yaw_deg=3
 refused "another host" 1 'missile is the host' "$s" --frames "$tmp/x" -- --speed 2
 refused "no such sights" 1 'none.csv' "$s" --sights "$tmp/none.csv"
+refused "a seed that no node has" 1 'seeds up to 2147483647.*not 2147483648' "$s" --sights "$tmp/none.csv" --set seed=2147483648
+refused "seeds that end there" 1 'seeds up to 2147483647.*not 2147483649' "$s" --frames "$tmp/x" --seeds 5 --set seed=2147483645
 printf 'frame,sight,column_px,row_px\n10,seen,,\n' >"$tmp/poor.csv"
 refused "sights without a place" 1 'column_px.*a place in the image' "$s" --sights "$tmp/poor.csv"
 printf 'frame,sight,column_px,row_px\n7,seen,48,32\n' >"$tmp/other.csv"

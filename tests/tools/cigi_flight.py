@@ -95,6 +95,8 @@ def fly(host, out, rough, live):
                         host.hat_hot(3, 2, lat, lon, h), host.hat_hot(4, 1, -10., 20., 0.),
                         host.hat_hot(5, 0, 0., 0., 0., entity=99), host.los_vector(6, (lat, lon, h), 0., -90., 0., 1e4),
                         host.sensor(VIEW, 2), host.user(220, 24), host.entity(TANK, 35.9986, -122.99989, 114., kind=1)]
+        if k == 0:
+            host.begun_s = time.monotonic()
         host.step(stamp(k), *packets)
         if rough:
             host.send(bytes(24))  # no CIGI
@@ -108,20 +110,30 @@ def fly(host, out, rough, live):
             time.sleep(0.4)
             host.send(host.control(stamp(k)), *packets)
             host.heartbeat(host.ig_frame)
+        if k % 2:
+            host.step(stamp(k) + 3 * 3600 * TICKS)  # its time goes ahead by hours: answered, and no frame
+            host.next()
         for number, order, data in rest:
             which, = struct.unpack(order + 'H', data[2:4])
             answers[number, which] = (data[4:8], *struct.unpack(order + 'dd', (data[8:] + bytes(16))[:16]))
     host.step(stamp(0), mode=OPERATE)  # its time goes back: answered, and no frame
     host.next()
-    if not live:
+    if live:
+        later = round((time.monotonic() - host.begun_s + 4) * TICKS)  # a frame of a time that comes in four seconds
+        host.last_s = (stamp(0) + later) / TICKS
+        host.step(stamp(0) + later)
+        host.next()
+    else:
         host.step(round(1360 * TICKS))  # behind exercise.to_s: the end
     return answers
 
 
 def judge_frames(host, out, live):
     lines = [json.loads(line) for line in open(f'{out}/truth.jsonl', encoding='utf-8')]
-    if [line['frame'] for line in lines] != list(range(FRAMES)):
+    if [line['frame'] for line in lines] != list(range(FRAMES + live)):
         host.fail(f'frames {[line["frame"] for line in lines]}')
+    if live and abs(lines.pop()['time_s'] - lines[0]['time_s'] - host.last_s + stamp(0) / TICKS) > 1e-9:
+        host.fail('the last frame is not that of four seconds later')
     before = None
     shift_s = lines[0]['time_s'] - stamp(0) / TICKS if live else 0  # a live exercise has a time of its own
     own = [sorted(t['entity'] for t in line['targets'] if t['entity'].startswith('4711:')) for line in lines]

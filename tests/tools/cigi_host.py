@@ -141,10 +141,11 @@ def expected(name, n):
             'a packet size of 0, or not a multiple of 8': n}},
         'restarts': {'frames': 3 * n, 'idle': n, 'restarts': n}, 'wraps': {'frames': n},
         'time_back': {'frames': n, 'idle': 2 * n, 'time_back': n, 'unstamped': n},
+        'time_ahead': {'frames': 4 * n, 'idle': 2 * n, 'time_ahead': n},
         'silent': {'frames': 3, 'silences': 1},
     }[name]
     return {'idle': 0, 'repeated': 0, 'old': 0, 'extra': 0, 'lost': 0, 'restarts': 0, 'silences': 0, 'time_back': 0,
-            'unstamped': 0, 'unanswered': 0, 'dropped': {}, 'skipped': {}, **words,
+            'time_ahead': 0, 'unstamped': 0, 'unanswered': 0, 'dropped': {}, 'skipped': {}, **words,
             'idle': words.get('idle', 0) + 1}  # begin()
 
 
@@ -326,6 +327,19 @@ def time_back(host, count):
             host.next()
 
 
+def time_ahead(host, count):
+    """A stamp that is hours ahead is answered, and nothing is made of it; time goes on from before. After Reset/Standby such
+    a time is meant."""
+    begin(host)
+    at = 0
+    for _ in range(count):
+        for stamp, mode in ((at, OPERATE), (at + 3 * 3600 * TICKS, OPERATE), (at + 600 * TICKS, OPERATE), (0, STANDBY),
+                            (at + 4000 * TICKS, OPERATE), (at + 4001 * TICKS, OPERATE)):
+            host.step(stamp, mode=mode)
+            host.next()
+        at += 4002 * TICKS
+
+
 def silent(host, _):
     """The host stops for a while, and comes back."""
     begin(host)
@@ -339,7 +353,7 @@ def silent(host, _):
 
 
 SCENARIOS = {f.__name__: f for f in (packets, lockstep, lost_answers, repeats, jumps, runs_ahead, garbage, restarts, wraps,
-                                     time_back, silent)}
+                                     time_back, time_ahead, silent)}
 
 
 def judge_account(host, name, count, lines):
@@ -354,6 +368,8 @@ def judge_account(host, name, count, lines):
             host.fail(f'{name}: {key}: {got}, not {value}')
     times = [line['t_s'] for line in lines if line.get('event') == 'due']
     if name == 'wraps' and times != [(2**32 - 2500 + k * 1000) / TICKS for k in range(count)]:
+        host.fail(f'times {times}')
+    if name == 'time_ahead' and times != [4002. * k + t for k in range(count) for t in (0, 600, 4000, 4001)]:
         host.fail(f'times {times}')
     if name == 'lockstep' and times != [k * 1000 / TICKS for k in range(count)]:
         host.fail(f'times {times}')

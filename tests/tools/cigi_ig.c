@@ -51,13 +51,15 @@ static void answer(CigiSession *s, const CigiPacket *p)
 static void print_counters(const CigiSession *s)
 {
     const CigiSessionCounters *c = &s->events;
-    printf("{\"frames\": %llu, \"idle\": %llu, \"repeats\": %llu, \"repeated\": %llu, \"old\": %llu, \"extra\": %llu, "
-           "\"lost\": %llu, \"restarts\": %llu, \"silences\": %llu, \"time_back\": %llu, \"unstamped\": %llu, "
-           "\"unanswered\": %llu, \"dropped\": {",
-           (unsigned long long)c->frames, (unsigned long long)c->idle, (unsigned long long)c->repeats,
-           (unsigned long long)c->repeated, (unsigned long long)c->old, (unsigned long long)c->extra,
-           (unsigned long long)c->lost, (unsigned long long)c->restarts, (unsigned long long)c->silences,
-           (unsigned long long)c->time_back, (unsigned long long)c->unstamped, (unsigned long long)c->unanswered);
+    printf(
+        "{\"frames\": %llu, \"idle\": %llu, \"repeats\": %llu, \"repeated\": %llu, \"old\": %llu, \"extra\": %llu, "
+        "\"lost\": %llu, \"restarts\": %llu, \"silences\": %llu, \"time_back\": %llu, \"time_ahead\": %llu, \"unstamped\": %llu, "
+        "\"unanswered\": %llu, \"dropped\": {",
+        (unsigned long long)c->frames, (unsigned long long)c->idle, (unsigned long long)c->repeats,
+        (unsigned long long)c->repeated, (unsigned long long)c->old, (unsigned long long)c->extra,
+        (unsigned long long)c->lost, (unsigned long long)c->restarts, (unsigned long long)c->silences,
+        (unsigned long long)c->time_back, (unsigned long long)c->time_ahead, (unsigned long long)c->unstamped,
+        (unsigned long long)c->unanswered);
     for (int i = 0; i < CIGI_DROP_COUNT; i++)
         printf("%s\"%s\": %llu", i ? ", " : "", cigi_drop_cause((CigiDrop)i),
                (unsigned long long)s->counters.dropped[i]);

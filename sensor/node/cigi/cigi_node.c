@@ -188,7 +188,12 @@ static void say_news(CigiNode *node)
     if (news & CIGI_NEWS_TIME_BACK && s->events.time_back == 1)
         log_warn("cigi: the host's time went back, before %.5f s: its frames have no picture until it is later",
                  cigi_session_time_s(s));
-    if (s->events.unstamped > 0 && s->events.idle > 0 && !s->timed)
+    if (news & CIGI_NEWS_TIME_AHEAD && s->events.time_ahead == 1)
+        log_warn(
+            "cigi: the host's time went ahead by more than %g s, from %.5f s: its frames have no picture until it is "
+            "nearer, or the host was in mode Reset/Standby",
+            s->config.ahead_s, cigi_session_time_s(s));
+    if (news & CIGI_NEWS_UNSTAMPED)
         once(&node->unstamped, "the host's time stamps are not valid: its frames have no picture");
 }
 

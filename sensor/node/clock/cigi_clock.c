@@ -42,6 +42,18 @@ static ClockAnswer await_arrival(FrameTime *frame, CigiClock *c)
     return c->due ? CLOCK_EARLY : CLOCK_DUE;
 }
 
+/* Once: a host that keeps real time is not ahead of it. */
+static void say_ahead(CigiClock *c)
+{
+    static const double much_s = 2;
+    const double        ahead_s = c->due_s - live_clock_now_s(c->live);
+    if (c->ahead || ahead_s < much_s) return;
+    c->ahead = true;
+    log_warn("cigi: the host's time is %.1f s ahead of the exercise's, which goes on by itself: its frame waits until "
+             "then",
+             ahead_s);
+}
+
 static ClockAnswer wait(FrameTime *frame, FrameClock *clock)
 {
     CigiClock *c = (CigiClock *)clock;
@@ -63,7 +75,9 @@ static ClockAnswer wait(FrameTime *frame, FrameClock *clock)
         return CLOCK_EARLY;
     }
     frame->t_s = c->due_s = t_s;
-    return c->live ? await_arrival(frame, c) : CLOCK_DUE;
+    if (!c->live) return CLOCK_DUE;
+    say_ahead(c);
+    return await_arrival(frame, c);
 }
 
 static void done(FrameClock *clock, const FrameTime *frame)

@@ -20,6 +20,7 @@ typedef struct CigiClock {
     double           offset_s; /* exercise time less the host's */
     uint64_t         restarts; /* of the host, by the last frame */
     bool             due;      /* live: the frame at due_s was asked for, and its time is still to come */
+    bool             ahead;    /* live: it was said that the host is far ahead */
     double           due_s;
 } CigiClock;
 

@@ -13,7 +13,6 @@ Status flight_loop_begin(FlightLoop *l)
     l->filter = sight_filter(l->memory);
     l->settled = -1;
     l->least_from_s = -INFINITY;
-    for (int i = 0; i < loop_waiting_most; i++) l->inbox[i].frame = -1;
     if (pthread_mutex_init(&l->lock, NULL) != 0) return STATUS_NO_MEMORY;
     pthread_condattr_init(&how);
     pthread_condattr_setclock(&how, CLOCK_MONOTONIC);
@@ -35,17 +34,18 @@ void flight_loop_next(FlightLoop *l)
     static const FlightState at_rest;
     pthread_mutex_lock(&l->lock);
     if (l->count > 0) l->settled = l->waiting[(l->first + l->count - 1) % loop_waiting_most].number;
+    l->first = l->count = 0;
+    l->late = 0;
     pthread_mutex_unlock(&l->lock);
     l->launched = l->ended = l->hit = l->target_known = false;
     l->state = at_rest;
     l->miss = miss_begin();
     l->most_lateral_mps2 = 0;
     l->guided = l->coasted = 0;
-    l->track_count = l->frames = l->first = l->count = 0;
+    l->track_count = l->frames = 0;
     l->usable_count = 0;
     l->filter = sight_filter(l->memory);
     memset(l->verdicts, 0, sizeof l->verdicts);
-    l->late = 0;
 }
 
 /* One step of 1 ms by the sight that guides then. False: it left what is computed. */

@@ -60,7 +60,7 @@ typedef struct LoopRow { /* a row of sights.csv */
 } LoopRow;
 
 typedef struct LoopAnswer {
-    int    frame; /* -1: none */
+    bool   there; /* the first answer to its frame */
     int    count;
     double px[answer_detections_most][2], score[answer_detections_most];
 } LoopAnswer;
@@ -127,8 +127,7 @@ struct FlightLoop {
     int          track_count, track_room;
     /* ---- sights */
     LoopCamera  eye; /* of the last frame */
-    LoopFrame   waiting[loop_waiting_most];
-    int         first, count, frames;
+    int         frames;
     double      least_from_s;              /* no sight that is taken now guides before */
     LoopUsable  usable[loop_waiting_most]; /* a ring: the newest is usable[(usable_count - 1) % most] */
     int64_t     usable_count;
@@ -137,12 +136,13 @@ struct FlightLoop {
     int         row_count, row_room;
     int         verdicts[loop_verdict_count];
     double      gone_s; /* wall clock; 0: it has not ended */
-    /* ---- shared with the thread that receives answers */
+    /* ---- shared with the thread that receives answers, which writes the inbox and the two counts alone */
     pthread_mutex_t lock;
     pthread_cond_t  arrived;
-    LoopAnswer      inbox[loop_waiting_most];
-    int             inbox_next, settled; /* settled: frames up to this one have their verdict; -1: none */
-    uint64_t        late;                /* answers to such, refused */
+    LoopFrame       waiting[loop_waiting_most]; /* a ring: from `first` on, [count], by ascending number */
+    LoopAnswer      inbox[loop_waiting_most];   /* of the frame at the same place */
+    int             first, count, settled;      /* settled: frames up to this one have their verdict; -1: none */
+    uint64_t late, unasked; /* refused: answers to such frames; to those of which nothing was asked, of all missiles */
 };
 
 Status flight_loop_begin(FlightLoop *loop); /* after `given` is filled in, all else 0 */
@@ -179,6 +179,8 @@ bool flight_loop_at(FlightState *out, const FlightLoop *loop, double t_s);
 void loop_sights_frame(FlightLoop *loop, int number);
 /* An AnswersTaken; user: the loop. */
 void loop_sights_taken(void *loop, const Answer *answer);
+/* Warns of answers to frames of which nothing was asked, if there were any. After the last answer. */
+void loop_sights_say_refused(const FlightLoop *loop);
 /* Settles what was seen in every frame whose sight guides before t_s. False: an answer is still waited for; a
  * hundredth of a second has passed. */
 bool loop_sights_settle(FlightLoop *loop, double t_s);

@@ -25,17 +25,29 @@ static bool point_of(double px[2], const AnswerDetection *d)
     return isfinite(px[0]) && isfinite(px[1]);
 }
 
+/* Where among the waiting frames one is; -1: it is none of them. The lock must be held. */
+static int waiting_at(const FlightLoop *l, int frame)
+{
+    for (int i = 0; i < l->count; i++) {
+        const int at = (l->first + i) % loop_waiting_most;
+        if (l->waiting[at].number == frame) return at;
+    }
+    return -1;
+}
+
+/* The first answer to a frame counts, whatever its band. One to a frame that is not waited for takes no other's place.
+ */
 void loop_sights_taken(void *user, const Answer *answer)
 {
     FlightLoop *l = user;
+    if (l->source != LOOP_ANSWERS) return;
     pthread_mutex_lock(&l->lock);
-    if (answer->frame <= l->settled) {
-        l->late++;
-    } else {
-        LoopAnswer *in = &l->inbox[l->inbox_next];
-        l->inbox_next = (l->inbox_next + 1) % loop_waiting_most;
-        in->frame = answer->frame;
-        in->count = 0;
+    const int   at = waiting_at(l, answer->frame);
+    LoopAnswer *in = at < 0 ? NULL : &l->inbox[at];
+    if (!in && answer->frame <= l->settled) l->late++;
+    else if (!in) l->unasked++;
+    if (in && !in->there) {
+        *in = (LoopAnswer){.there = true};
         for (int i = 0; i < answer->count; i++)
             if (point_of(in->px[in->count], &answer->detection[i])) in->score[in->count++] = answer->detection[i].score;
         pthread_cond_signal(&l->arrived);
@@ -43,15 +55,8 @@ void loop_sights_taken(void *user, const Answer *answer)
     pthread_mutex_unlock(&l->lock);
 }
 
-/* The lock must be held. The first answer to a frame counts, whatever its band. */
-static const LoopAnswer *answer_to(const FlightLoop *l, int frame)
-{
-    for (int i = 0; i < loop_waiting_most; i++) {
-        const LoopAnswer *in = &l->inbox[(l->inbox_next + i) % loop_waiting_most];
-        if (in->frame == frame) return in;
-    }
-    return NULL;
-}
+/* The answer to the frame that waits at a place. The lock must be held. */
+static const LoopAnswer *answer_at(const FlightLoop *l, int at) { return l->inbox[at].there ? &l->inbox[at] : NULL; }
 
 /* ---- lines of sight --------------------------------------------------------------------------------- */
 
@@ -145,6 +150,15 @@ static void guide_truly(FlightLoop *l, const LoopCamera *c)
         push(l, &sight);
 }
 
+void loop_sights_say_refused(const FlightLoop *l)
+{
+    if (l->unasked == 0) return;
+    log_warn(
+        "flight: %llu answers are refused: to frames of which nothing was asked; does the recogniser answer another "
+        "run's?",
+        (unsigned long long)l->unasked);
+}
+
 /* ---- what was seen in each frame -------------------------------------------------------------------- */
 
 static void note(FlightLoop *l, int frame, LoopVerdict verdict, const double px[2])
@@ -164,8 +178,12 @@ static void settle(FlightLoop *l, const LoopFrame *f, LoopVerdict verdict, const
 {
     l->verdicts[verdict]++;
     if (verdict == LOOP_SEEN) guide(l, &f->camera, px);
+    pthread_mutex_lock(&l->lock);
+    l->settled = f->number; /* what comes later is refused, as is what came just now */
+    l->late += verdict == LOOP_NONE && l->inbox[l->first].there;
     l->first = (l->first + 1) % loop_waiting_most;
     l->count--;
+    pthread_mutex_unlock(&l->lock);
 }
 
 /* As the recording has it. */
@@ -207,13 +225,9 @@ static bool settle_answered(FlightLoop *l, const LoopFrame *f)
     LoopVerdict verdict = LOOP_NONE;
     const bool  over = too_late(l, f);
     pthread_mutex_lock(&l->lock);
-    const LoopAnswer *a = answer_to(l, f->number);
-    if (!a && !over) {
-        await(l);
-        a = answer_to(l, f->number);
-    }
+    if (!answer_at(l, l->first) && !over) await(l);
+    const LoopAnswer *a = answer_at(l, l->first);
     if (a) verdict = choose(px, l, &f->camera, a);
-    if (a || over) l->settled = f->number; /* what comes later is refused */
     pthread_mutex_unlock(&l->lock);
     if (!a && !over) return false;
     note(l, f->number, verdict, px);
@@ -238,7 +252,7 @@ static int newest_answered(FlightLoop *l)
     int newest = -1;
     pthread_mutex_lock(&l->lock);
     for (int i = 0; i < l->count; i++)
-        if (answer_to(l, l->waiting[(l->first + i) % loop_waiting_most].number)) newest = i;
+        if (answer_at(l, (l->first + i) % loop_waiting_most)) newest = i;
     pthread_mutex_unlock(&l->lock);
     return newest;
 }
@@ -254,9 +268,8 @@ void loop_sights_arrived(FlightLoop *l, double t_s)
         LoopVerdict     verdict = LOOP_NONE;
         if (answered < 0 && t_s - f.camera.t_s <= longest_s && l->count < loop_waiting_most - 1) break;
         pthread_mutex_lock(&l->lock);
-        const LoopAnswer *a = answer_to(l, f.number);
+        const LoopAnswer *a = answer_at(l, l->first);
         if (a) verdict = choose(px, l, &f.camera, a);
-        l->settled = f.number;
         pthread_mutex_unlock(&l->lock);
         settle(l, &f, verdict, px);
     }
@@ -291,7 +304,11 @@ void loop_sights_frame(FlightLoop *l, int number)
         const LoopFrame oldest = l->waiting[l->first];
         settle(l, &oldest, LOOP_NONE, NULL);
     }
-    l->waiting[(l->first + l->count++) % loop_waiting_most] = (LoopFrame){number, wall_clock_s(), l->eye};
+    pthread_mutex_lock(&l->lock);
+    const int at = (l->first + l->count++) % loop_waiting_most;
+    l->waiting[at] = (LoopFrame){number, wall_clock_s(), l->eye};
+    l->inbox[at].there = false;
+    pthread_mutex_unlock(&l->lock);
 }
 
 /* ---- the recording --------------------------------------------------------------------------------- */

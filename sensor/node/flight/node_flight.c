@@ -425,6 +425,7 @@ Status node_flight_close(NodeFlight *n)
     Status status = n->status;
     if (n->loop.ended && n->report.closed && n->round < n->config->flight.rounds) conclude(n);
     else if (n->loop.launched && !n->loop.ended) log_warn("flight: the missile is still in the air when the run ends");
+    loop_sights_say_refused(&n->loop);
     if (n->loop.out_of_memory) status = STATUS_NO_MEMORY;
     if (n->recorder && dis_recorder_close(n->recorder) != STATUS_OK) status = STATUS_IO;
     if (status == STATUS_OK && n->recorder) status = write_table(n);

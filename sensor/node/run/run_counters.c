@@ -244,6 +244,8 @@ static const Field cigi_rows[] = {
     {"restarts", "", "", "", "how often it began anew", OF_CIGI(session.events.restarts)},
     {"silences", "", "", "", "how often it was silent for 5 s", OF_CIGI(session.events.silences)},
     {"time_back", "", "", "", "frames whose time was before the last", OF_CIGI(session.events.time_back)},
+    {"time_ahead", "", "", "", "frames whose time was more than ten minutes after the last",
+     OF_CIGI(session.events.time_ahead)},
     {"unstamped", "", "", "", "frames without a valid time stamp", OF_CIGI(session.events.unstamped)},
     {"requests_lost", "", "", "", "requests that did not fit into a frame", OF_CIGI(requests_lost)},
     {"answers_lost", "", "", "", "answers that did not fit into a datagram", OF_CIGI(session.events.unanswered)},

@@ -175,8 +175,11 @@ static Status add_projector(Consumers *list, Session *s)
     const Camera *camera = camera_of(&s->instruments);
     Consumer     *consumer = NULL;
     if (!*config->projector.band) return STATUS_OK;
-    ProjectorOf of = {
-        .config = config, .bands = s->shared->bands, .latency = s->latency, .counters = &s->result.sent.projector};
+    ProjectorOf of = {.config = config,
+                      .live = s->shared->live,
+                      .bands = s->shared->bands,
+                      .latency = s->latency,
+                      .counters = &s->result.sent.projector};
     for (int b = 0; b < BAND_COUNT && camera; b++)
         if (camera->chain[b]) of.count_bits[b] = (int)lround(log2(chain_full(camera->chain[b]) + 1));
     const Status status = consume_projector(&consumer, &of);

@@ -184,8 +184,10 @@ static Status choose_source(Projector *p)
 Status consume_projector(Consumer **out, const ProjectorOf *of)
 {
     static const char *const scale[] = {[PROJECTOR_ONE] = "one", [PROJECTOR_WHOLE] = "whole", [PROJECTOR_FIT] = "fit"};
-    const Config            *config = of->config;
-    Projector               *p = calloc(1, sizeof *p);
+    static const char *const axes[] = {
+        [PROJECTOR_NO_GAMEPAD] = "none", [PROJECTOR_LEVEL] = "level", [PROJECTOR_BODY] = "body"};
+    const Config *config = of->config;
+    Projector    *p = calloc(1, sizeof *p);
     if (!p) return STATUS_NO_MEMORY;
     p->of = *of;
     p->count = (size_t)config->sensor.width_px * (size_t)config->sensor.height_px;
@@ -200,15 +202,18 @@ Status consume_projector(Consumer **out, const ProjectorOf *of)
     }
     if (p->source != OF_RADIANCE) p->consumer.wants = p->source == OF_COUNTS ? WANT_COUNTS : WANT_DISPLAY;
     if (status == STATUS_OK)
-        status = display_window_open(&p->window, &(DisplayWindowOf){.width = config->sensor.width_px,
-                                                                    .height = config->sensor.height_px,
-                                                                    .display = config->projector.display,
-                                                                    .size = config->projector.window,
-                                                                    .scale = scale[config->projector.scale],
-                                                                    .vsync = config->projector.vsync,
-                                                                    .flipped = flipped,
-                                                                    .dropped = dropped,
-                                                                    .user = p});
+        status = display_window_open(
+            &p->window, &(DisplayWindowOf){.width = config->sensor.width_px,
+                                           .height = config->sensor.height_px,
+                                           .display = config->projector.display,
+                                           .size = config->projector.window,
+                                           .scale = scale[config->projector.scale],
+                                           .vsync = config->projector.vsync,
+                                           .gamepad = axes[of->live ? config->projector.gamepad : PROJECTOR_NO_GAMEPAD],
+                                           .head = config->exercise.head,
+                                           .flipped = flipped,
+                                           .dropped = dropped,
+                                           .user = p});
     if (status != STATUS_OK) {
         close_projector(&p->consumer);
         return status;

@@ -8,6 +8,7 @@
 
 typedef struct ProjectorOf {
     const Config      *config;                 /* projector..., the image's size; outlives the consumer */
+    bool               live;                   /* poses of a gamepad are taken */
     unsigned           bands;                  /* of the run */
     int                count_bits[BAND_COUNT]; /* of raw counts; 0: a band without a sensor has none */
     Latency           *latency;                /* of its frames: it enters its flips by itself; NULL: none is kept */

@@ -44,8 +44,14 @@ static int spawn(pid_t *process, const char *program, int socket, int memory, co
     posix_spawnattr_t          attributes;
     sigset_t                   none;
     snprintf(display, sizeof display, "%d", of->display);
-    char *arguments[] = {(char *)"pitviper-projector",       display, (char *)of->size, (char *)of->scale,
-                         (char *)(of->vsync ? "on" : "off"), NULL};
+    char *arguments[] = {(char *)"pitviper-projector",
+                         display,
+                         (char *)of->size,
+                         (char *)of->scale,
+                         (char *)(of->vsync ? "on" : "off"),
+                         (char *)of->gamepad,
+                         (char *)of->head,
+                         NULL};
     sigemptyset(&none);
     int error = posix_spawn_file_actions_init(&actions);
     if (error) return error;
@@ -133,9 +139,11 @@ static bool take(DisplayWindow *w, WindowMessage *m)
         memcpy(w->counters.what, text, sizeof text);
     }
     pthread_mutex_unlock(&w->lock);
+    if (m->event == WINDOW_NOTED) log_info("projector: %s", text);
     if (m->event == WINDOW_FAILED) log_error("projector: %s", text);
     if (m->event == WINDOW_CLOSED) log_warn("projector: its window was closed; frames go on without it");
-    return m->event == WINDOW_OPENED || m->event == WINDOW_FLIPPED; /* after anything else it ends */
+    return m->event == WINDOW_OPENED || m->event == WINDOW_FLIPPED ||
+           m->event == WINDOW_NOTED; /* after anything else it ends */
 }
 
 static void *listen_to_it(void *user)

@@ -16,6 +16,8 @@ typedef struct DisplayWindowOf {
     const char *size;  /* `full`, or WIDTHxHEIGHT */
     const char *scale; /* `one`, `whole`, `fit` */
     bool        vsync;
+    const char *gamepad; /* `none`, or whose axes a gamepad's poses are of: `level`, `body` */
+    const char *head;    /* ADDRESS:PORT that these go to */
     /* An image was flipped at wall_clock_s at_s, or is never shown; the one from the thread of the window,
      * the other from that which gives images. NULL: not told. */
     void (*flipped)(void *user, uint32_t number, double at_s);

@@ -57,7 +57,8 @@ typedef enum WindowEvent {
     WINDOW_OPENED = 1, /* text: what it is shown by and where; number: refresh rate, mHz, 0: not known */
     WINDOW_FLIPPED,    /* number: of the image; time_ns: CLOCK_MONOTONIC when its flip was done */
     WINDOW_FAILED,     /* text: why; it ends */
-    WINDOW_CLOSED      /* by its user; it ends */
+    WINDOW_CLOSED,     /* by its user; it ends */
+    WINDOW_NOTED       /* text: what its user may want to know */
 } WindowEvent;
 
 typedef struct WindowMessage {

@@ -1,9 +1,12 @@
 /* sensor/publish/projector/window/projector_window.c: pitviper-projector: a window, or a whole display, that shows the
- * newest image in shared memory and says when it was flipped. The node starts it
+ * newest image in shared memory and says when it was flipped, and that takes a gamepad's sticks. The node starts it
  * (sensor/publish/projector/display_window.c); it is a program of its own since a window system that fails, or is slow,
  * ends or holds up the program that it serves.
  *
- *     pitviper-projector DISPLAY WIDTHxHEIGHT|full one|whole|fit on|off      image size is in the shared memory */
+ *     pitviper-projector DISPLAY WIDTHxHEIGHT|full one|whole|fit on|off none|level|body ADDRESS:PORT
+ *
+ * Image size is in the shared memory; ADDRESS:PORT takes the poses of a gamepad, in axes of the word before. */
+#include "sensor/publish/projector/window/gamepad.h"
 #include "sensor/publish/projector/window_wire.h"
 
 #define SDL_MAIN_HANDLED
@@ -32,6 +35,7 @@ typedef struct Shown {
     SDL_Renderer *renderer;
     SDL_Texture  *texture;
     SDL_Rect      place;
+    Gamepad       gamepad;
 } Shown;
 
 static void send_message(const WindowMessage *m)
@@ -46,6 +50,8 @@ static void say(WindowEvent event, uint32_t number, const char *text)
     snprintf(m.text, sizeof m.text, "%s", text);
     send_message(&m);
 }
+
+static void note(const char *text) { say(WINDOW_NOTED, 0, text); }
 
 static int failed(const char *what)
 {
@@ -181,6 +187,9 @@ static int show(Shown *s)
             if (got == 0) return 0; /* the node has ended it, or has died */
         }
         ok = show_newest(s);
+        struct timespec now;
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        gamepad_step(&s->gamepad, (double)now.tv_sec + 1e-9 * (double)now.tv_nsec);
         if (ok && !take_events(s, &ok)) {
             say(WINDOW_CLOSED, 0, "");
             return 0;
@@ -189,10 +198,19 @@ static int show(Shown *s)
     return failed("showing an image");
 }
 
+/* Without one that works all else goes on. */
+static void open_gamepad(Shown *s, const char *axes, const char *address_port)
+{
+    char text[window_text_size];
+    if (strcmp(axes, "none") == 0 || gamepad_open(&s->gamepad, address_port, strcmp(axes, "body") == 0, note)) return;
+    snprintf(text, sizeof text, "gamepad: none turns the eye: %.120s", SDL_GetError());
+    note(text);
+}
+
 int main(int argc, char **argv)
 {
-    Shown s = {.own = 0};
-    if (argc != 5 || !map(&s)) {
+    Shown s = {.own = 0, .gamepad = {.socket = -1}};
+    if (argc != 7 || !map(&s)) {
         fputs("pitviper-projector: `pitviper run --projector BAND` starts it\n", stderr);
         return 2;
     }
@@ -209,7 +227,9 @@ int main(int argc, char **argv)
     }
     SDL_DisableScreenSaver();
     const bool opened = open_window(&s, atoi(argv[1]), argv[2], argv[3], strcmp(argv[4], "on") == 0);
-    const int  code = opened ? show(&s) : failed("opening a window");
+    if (opened) open_gamepad(&s, argv[5], argv[6]);
+    const int code = opened ? show(&s) : failed("opening a window");
+    gamepad_close(&s.gamepad);
     SDL_Quit();
     return code;
 }
