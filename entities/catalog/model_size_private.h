@@ -36,7 +36,7 @@ typedef struct ModelFit {
     int axis[3]; /* for each of forward, right, up: the body axis as loaded (0 forward, 1 right, 2 up) that it should be
                   */
     double factor;      /* factor on all lengths that would fit; 0: none does */
-    char   advice[320]; /* what to write into the sidecar */
+    char   advice[400]; /* what to write into the sidecar */
 } ModelFit;
 
 /* want: the requested size, 0 where unknown. tolerance: largest factor between two lengths that agree, above 1. */
