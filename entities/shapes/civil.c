@@ -80,7 +80,9 @@ static void build_lorry(MeshBuilder *b)
     parts_box(b, 2.90, 3.9, -0.55, 0.55, 0.55, 0.98); /* the engine below the cab */
     lamps(b, 4.59, 0.85, 1.10, 0.62, 0.82);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
-    parts_boxes(b, 1.55, 2.35, 0.75, 1.20, 0.45, 0.90);
+    parts_box(b, 1.55, 2.35, -1.20, -0.75, 0.45, 0.90); /* one silencer; on the other side is the tank */
+    mesh_part(b, 0, "tank", "paint_silver", HEAT_PASSIVE);
+    parts_box(b, 1.50, 2.40, 0.75, 1.20, 0.45, 0.95);
     pair_of_wheels(b, 1, 3.55, 1.04, 0.48, 0.15);
     pair_of_wheels(b, 2, -2.05, 0.97, 0.48, 0.26);
 }
@@ -164,8 +166,7 @@ static void build_excavator(MeshBuilder *b)
     mesh_part(b, 0, "engine_deck", "paint_machine_yellow", HEAT_ENGINE_DECK);
     parts_box(b, -2.22, -0.55, -1.30, 1.30, 1.05, 2.12);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
-    parts_bar(b, -1.7, 0.75, 2.05, -1.7, 0.75, 2.62, 0.07);
-    parts_bar(b, -1.75, 0.30, 2.16, -1.0, 0.30, 2.16, 0.13); /* silencer */
+    parts_bar(b, -1.7, 0.75, 2.05, -1.7, 0.75, 2.62, 0.07); /* its silencer is below the hood */
     mesh_part(b, 0, "cab", "metal_dark", HEAT_CABIN);
     static const double cab[5][2] = {{-0.25, 1.60}, {1.42, 1.60}, {1.50, 1.95}, {1.15, 2.05}, {-0.25, 2.05}};
     parts_profile(b, 5, cab, -1.28, -0.40);
