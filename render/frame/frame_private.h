@@ -175,11 +175,11 @@ Status target_sums_gather(Picture *picture, const SumRules *rules, const WorkerS
  *   small targets  each sampled on a grid over its own box                 target_grid.c
  *   base           every pixel, without the small targets                  passes.c
  *   fill           at cheaper steps of sampling, pixels without rays       sampling.c
- *   edges          pixels whose neighbours differ, with more rays          edges.c, hot_parts.c select, refine.c samples
- *   leaves         pixels of plants, smoothed among themselves              leaf_filter.c
- *   composite      the small targets, over the pixels                      target_grid_picture.c
- *   error estimate a few pixels, re-sampled                                error_estimate.c, plant_price.c
- * Each of them shades samples (shade.h) and sums the results in its own way; render.c runs them in turn. */
+ *   edges          pixels whose neighbours differ, with more rays          edges.c, hot_parts.c select, refine.c
+ * samples leaves         pixels of plants, smoothed among themselves              leaf_filter.c composite      the
+ * small targets, over the pixels                      target_grid_picture.c error estimate a few pixels, re-sampled
+ * error_estimate.c, plant_price.c Each of them shades samples (shade.h) and sums the results in its own way; render.c
+ * runs them in turn. */
 
 enum { tile_side_samples = 32 };
 
@@ -305,8 +305,8 @@ enum { hot_samples = 8 };
 /* Marks what is always refined: bounding boxes of medium-sized targets, and the ground where a target's shadow
  * falls; and where plants are refined. After the target grids. */
 void mark_boxes(Job *job);
-/* Marks the pixels on hot parts of clutter that are narrow on the image: exhausts of engines that run or stopped lately,
- * and what burns (hot_parts.c). STATUS_NO_MEMORY. */
+/* Marks the pixels on hot parts of clutter that are narrow on the image: exhausts of engines that run or stopped
+ * lately, and what burns (hot_parts.c). STATUS_NO_MEMORY. */
 Status mark_hot_parts(Job *job, Arena *arena);
 /* The flags of a tile's pixels, row by row, including those marked. Reads the truth planes and the plane of
  * sunlight. */
