@@ -112,7 +112,8 @@ static void build_tractor(MeshBuilder *b)
     parts_block(b, (Rectangle){-1.48, 0.38, -0.80, 0.80}, 2.64, (Rectangle){-1.35, 0.22, -0.70, 0.70}, 2.86);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
     parts_bar(b, 0.62, 0.44, 1.30, 0.62, 0.44, 2.55, 0.06);
-    parts_bar(b, 0.62, 0.44, 1.55, 0.62, 0.44, 2.10, 0.085);
+    mesh_part(b, 0, "guard", "metal_dark", HEAT_ENGINE_DECK); /* about what is hot within reach (ISO 26322-1) */
+    parts_bar(b, 0.62, 0.44, 1.50, 0.62, 0.44, 2.10, 0.10);
     lamps(b, 2.165, 0.10, 0.28, 1.30, 1.45);
     pair_of_wheels(b, 1, 1.45, 0.88, 0.60, 0.20);
     pair_of_wheels(b, 2, -1.02, 0.90, 0.86, 0.26);
