@@ -50,6 +50,7 @@ typedef struct Hiding {
     HideSight      sight;
     double (*taken)[2]; /* [cast->hidden_count] of the landscape */
     HideWorld world;
+    int       left_out; /* as HideFound's, the most of any vehicle */
 } Hiding;
 
 static double planned_of(const Scenario *s, const ScenarioGroup *g, int entity)
@@ -92,6 +93,7 @@ static Status hide_one(Hiding *h, const HideGround *ground, int group, int entit
                   s->path, g->line, g->hide_m, scenario_hide_name(g->hide));
         return STATUS_BAD_VALUE;
     }
+    if (found.left_out > h->left_out) h->left_out = found.left_out;
     CastHidden *own = &cast->hidden[cast->hidden_count];
     *own = (CastHidden){.planned = wish.occlusion, .judged = found.occlusion, .entity = entity, .fit = found.fit};
     own->heading_rad = found.heading_rad;
@@ -202,7 +204,8 @@ Status cast_hide(Cast *cast, const int *ids, const int *first, const Catalog *ca
                          catalog,
                          hide_sight(s),
                          NULL,
-                         {&cast->ground.stored, (uint64_t)s->ground.seed, culture, judge}};
+                         {&cast->ground.stored, (uint64_t)s->ground.seed, culture, judge},
+                         0};
     Status          status = STATUS_OK;
     int             hidden = 0;
     for (int g = 0; g < s->group_count; g++)
@@ -214,6 +217,11 @@ Status cast_hide(Cast *cast, const int *ids, const int *first, const Catalog *ca
     if (status == STATUS_OK && culture) culture_lay(&cast->ground.stored, culture);
     for (int g = 0; g < s->group_count && status == STATUS_OK; g++) status = hide_group(&h, g);
     for (int g = 0; g < s->group_count && status == STATUS_OK; g++) lay_nets(&h, g);
+    if (status == STATUS_OK && h.left_out > 0)
+        log_warn(
+            "scenario: hide: up to %d plants and walls' triangles between a vehicle and the observer are not looked "
+            "at, more than are (%d, %d); next: a higher seen.height_m",
+            h.left_out, hide_plants_most, hide_solids_most);
     free(h.taken);
     return status;
 }

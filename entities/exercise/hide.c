@@ -281,7 +281,7 @@ bool hide_find(HideFound *out, const HideGround *ground, const HideWish *wish, c
 {
     HideFound  list[judged_most + 1];
     HidePoints points;
-    int        fit = 0, count = 0;
+    int        fit = 0, count = 0, most_left_out = 0;
     for (int n = 0; n < candidates && fit < kept_most; n++) {
         HideFound found = {0};
         if (!draw_pose(&found.pose, &found.heading_rad, wish, ground, sight, n)) continue;
@@ -293,11 +293,13 @@ bool hide_find(HideFound *out, const HideGround *ground, const HideWish *wish, c
         if (!bears(ground->landscape, &found.pose, wish->shape.model)) continue;
         if (wish->kind == SCENARIO_HIDE_HOLLOW && !is_hollow(ground->landscape, found.pose.p_enu)) continue;
         if (!points_of(&points, &found.pose, wish, sight)) return false;
-        found.occlusion = hide_occlusion(ground, &found.pose, &points, sight, wish->beside);
+        int left_out;
+        found.occlusion = hide_occlusion(&left_out, ground, &found.pose, &points, sight, wish->beside);
+        if (left_out > most_left_out) most_left_out = left_out;
         fit++;
         keep(list, &count, &found, wish->occlusion);
     }
     if (count > 0) judge_list(out, list, count, ground, wish, sight);
-    out->fit = fit;
+    out->fit = fit, out->left_out = most_left_out;
     return count > 0;
 }

@@ -71,9 +71,12 @@ typedef struct HidePoints {
 } HidePoints;
 Status hide_points(HidePoints *out, const HideShape *shape, const double d_body[3]);
 
-/* Estimated share of these points that plants, ground, what is built and the box (NULL: none) hide, 0 .. 1. */
-double hide_occlusion(const HideGround *ground, const HidePose *pose, const HidePoints *points, const HideSight *sight,
-                      const HideBox *box);
+/* Estimated share of these points that plants, ground, what is built and the box (NULL: none) hide, 0 .. 1. left_out
+ * (NULL: not asked): plants and triangles along the line that are not looked at, since there are more than the limits
+ * (hide_plants_most, hide_solids_most). */
+enum { hide_plants_most = 4096 };
+double hide_occlusion(int *left_out, const HideGround *ground, const HidePose *pose, const HidePoints *points,
+                      const HideSight *sight, const HideBox *box);
 /* The same by the judge of the ground. False: it could not. */
 bool hide_judged(double *occlusion, const HideGround *ground, const HidePose *pose, const HidePoints *points,
                  const HideSight *sight, const HideBox *box);
@@ -101,6 +104,7 @@ typedef struct HideFound {
     double   heading_rad;
     double   occlusion; /* judged, else estimated */
     int      fit;       /* candidates that were of the kind */
+    int      left_out;  /* as hide_occlusion's, the most of any candidate */
 } HideFound;
 /* False: no candidate is of that kind. */
 bool hide_find(HideFound *out, const HideGround *ground, const HideWish *wish, const HideSight *sight);

@@ -90,11 +90,14 @@ int hide_solids_along(int list[hide_solids_most], const HideSolids *s, const dou
     const double        level = fmax(hypot(d_enu[0], d_enu[1]), 1e-9);
     const double        long_m = fmin(level * range_m, tallest_m * level / fmax(d_enu[2], 0.02));
     int                 count = 0;
-    for (int t = 0; t < s->count && count < hide_solids_most; t++) {
+    for (int t = 0; t < s->count; t++) {
         const double dx = s->about[t][0] - p_enu[0], dy = s->about[t][1] - p_enu[1], beside = radius_m + s->about[t][2];
         const double along = (dx * d_enu[0] + dy * d_enu[1]) / level;
         const double across = fabs(dx * d_enu[1] - dy * d_enu[0]) / level;
-        if (across <= beside && along >= -beside && along <= long_m + beside) list[count++] = t;
+        if (across <= beside && along >= -beside && along <= long_m + beside) {
+            if (count < hide_solids_most) list[count] = t;
+            count++;
+        }
     }
     return count;
 }

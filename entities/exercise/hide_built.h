@@ -18,7 +18,8 @@ Status hide_solids_open(HideSolids *out, const Culture *culture, const Landscape
                         double half_m);
 void   hide_solids_close(HideSolids *solids); /* accepts zeroes */
 
-/* The triangles that may stand between what is within radius_m of a place and an observer along d (unit, ENU). */
+/* The triangles that may stand between what is within radius_m of a place and an observer along d (unit, ENU). Returns
+ * how many there are, of which the first hide_solids_most are in the list. */
 enum { hide_solids_most = 16384 };
 int hide_solids_along(int list[hide_solids_most], const HideSolids *solids, const double p_enu[3], double radius_m,
                       const double d_enu[3], double range_m);

@@ -311,10 +311,9 @@ static bool ground_hides(const Landscape *landscape, const double p_enu[3], cons
 
 /* ---- all of it ------------------------------------------------------------------------------------------- */
 
-enum { plants_most = 4096 };
-
-/* The plants of squares near the line whose crowns may be in its way. */
-static int plants_along(const Plant *list[plants_most], const HideGround *ground, const HidePose *pose,
+/* The plants of squares near the line whose crowns may be in its way. Returns how many there are, of which the first
+ * hide_plants_most are in the list. */
+static int plants_along(const Plant *list[hide_plants_most], const HideGround *ground, const HidePose *pose,
                         const HideSight *sight)
 {
     static const double tallest_m = 30, beside_m = 14;
@@ -331,13 +330,14 @@ static int plants_along(const Plant *list[plants_most], const HideGround *ground
     }
     for (int j = (int)clamp(low[1], 0, w->ny); j <= (int)clamp(high[1], -1, w->ny - 1); j++)
         for (int i = (int)clamp(low[0], 0, w->nx); i <= (int)clamp(high[0], -1, w->nx - 1); i++)
-            for (uint32_t n = w->first[j * w->nx + i]; n < w->first[j * w->nx + i + 1] && count < plants_most; n++) {
+            for (uint32_t n = w->first[j * w->nx + i]; n < w->first[j * w->nx + i + 1]; n++) {
                 const Plant *p = &w->plant[n];
                 const double x = (double)p->p_m[0] + w->origin_enu[0], y = (double)p->p_m[1] + w->origin_enu[1];
                 const double dx = x - pose->p_enu[0], dy = y - pose->p_enu[1];
                 const double along = dx * u[0] + dy * u[1], across = fabs(dx * u[1] - dy * u[0]);
                 if (along < -beside_m || along > long_m || across > beside_m) continue;
-                list[count++] = p;
+                if (count < hide_plants_most) list[count] = p;
+                count++;
             }
     return count;
 }
@@ -359,16 +359,19 @@ static int solids_along(int list[hide_solids_most], const HideGround *ground, co
     return hide_solids_along(list, &ground->solids, pose->p_enu, radius_m, sight->d_enu, sight->range_m);
 }
 
-double hide_occlusion(const HideGround *ground, const HidePose *pose, const HidePoints *points, const HideSight *sight,
-                      const HideBox *box)
+double hide_occlusion(int *left_out, const HideGround *ground, const HidePose *pose, const HidePoints *points,
+                      const HideSight *sight, const HideBox *box)
 {
     static const double      deepest = 8; /* e^-8 is nothing */
-    const Plant             *list[plants_most];
-    const int                plants = plants_along(list, ground, pose, sight);
+    const Plant             *list[hide_plants_most];
+    const int                all_plants = plants_along(list, ground, pose, sight);
+    const int                plants = all_plants < hide_plants_most ? all_plants : hide_plants_most;
     static _Thread_local int solid[hide_solids_most];
-    const int                solids = solids_along(solid, ground, pose, points, sight);
+    const int                all_solids = solids_along(solid, ground, pose, points, sight);
+    const int                solids = all_solids < hide_solids_most ? all_solids : hide_solids_most;
     const Woods             *w = &ground->woods;
     double                   seen = 0;
+    if (left_out) *left_out = all_plants - plants + all_solids - solids;
     for (int n = 0; n < points->count; n++) {
         double p[3], depth = 0;
         point_of(p, pose, points->p_body[n]);
@@ -402,7 +405,8 @@ bool hide_judged(double *occlusion, const HideGround *ground, const HidePose *po
     }
     if (judge->dark(judge->user, dark, eye_enu, points->count, o_enu, d_enu, sight->range_m) != STATUS_OK) return false;
     static _Thread_local int solid[hide_solids_most];
-    const int                solids = solids_along(solid, ground, pose, points, sight);
+    const int                all_solids = solids_along(solid, ground, pose, points, sight);
+    const int                solids = all_solids < hide_solids_most ? all_solids : hide_solids_most;
     for (int n = 0; n < points->count; n++) {
         const double p[3] = {o[0][n], o[1][n], o[2][n]};
         hidden += dark[n] || hide_solids_meet(&ground->solids, solid, solids, p, sight->d_enu) ||

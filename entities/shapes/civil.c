@@ -80,7 +80,9 @@ static void build_lorry(MeshBuilder *b)
     parts_box(b, 2.90, 3.9, -0.55, 0.55, 0.55, 0.98); /* the engine below the cab */
     lamps(b, 4.59, 0.85, 1.10, 0.62, 0.82);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
-    parts_boxes(b, 1.55, 2.35, 0.75, 1.20, 0.45, 0.90);
+    parts_box(b, 1.55, 2.35, -1.20, -0.75, 0.45, 0.90); /* one silencer; on the other side is the tank */
+    mesh_part(b, 0, "tank", "paint_silver", HEAT_PASSIVE);
+    parts_box(b, 1.50, 2.40, 0.75, 1.20, 0.45, 0.95);
     pair_of_wheels(b, 1, 3.55, 1.04, 0.48, 0.15);
     pair_of_wheels(b, 2, -2.05, 0.97, 0.48, 0.26);
 }
@@ -110,7 +112,8 @@ static void build_tractor(MeshBuilder *b)
     parts_block(b, (Rectangle){-1.48, 0.38, -0.80, 0.80}, 2.64, (Rectangle){-1.35, 0.22, -0.70, 0.70}, 2.86);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
     parts_bar(b, 0.62, 0.44, 1.30, 0.62, 0.44, 2.55, 0.06);
-    parts_bar(b, 0.62, 0.44, 1.55, 0.62, 0.44, 2.10, 0.085);
+    mesh_part(b, 0, "guard", "metal_dark", HEAT_ENGINE_DECK); /* about what is hot within reach (ISO 26322-1) */
+    parts_bar(b, 0.62, 0.44, 1.50, 0.62, 0.44, 2.10, 0.10);
     lamps(b, 2.165, 0.10, 0.28, 1.30, 1.45);
     pair_of_wheels(b, 1, 1.45, 0.88, 0.60, 0.20);
     pair_of_wheels(b, 2, -1.02, 0.90, 0.86, 0.26);
@@ -164,8 +167,7 @@ static void build_excavator(MeshBuilder *b)
     mesh_part(b, 0, "engine_deck", "paint_machine_yellow", HEAT_ENGINE_DECK);
     parts_box(b, -2.22, -0.55, -1.30, 1.30, 1.05, 2.12);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
-    parts_bar(b, -1.7, 0.75, 2.05, -1.7, 0.75, 2.62, 0.07);
-    parts_bar(b, -1.75, 0.30, 2.16, -1.0, 0.30, 2.16, 0.13); /* silencer */
+    parts_bar(b, -1.7, 0.75, 2.05, -1.7, 0.75, 2.62, 0.07); /* its silencer is below the hood */
     mesh_part(b, 0, "cab", "metal_dark", HEAT_CABIN);
     static const double cab[5][2] = {{-0.25, 1.60}, {1.42, 1.60}, {1.50, 1.95}, {1.15, 2.05}, {-0.25, 2.05}};
     parts_profile(b, 5, cab, -1.28, -0.40);

@@ -175,11 +175,11 @@ Status target_sums_gather(Picture *picture, const SumRules *rules, const WorkerS
  *   small targets  each sampled on a grid over its own box                 target_grid.c
  *   base           every pixel, without the small targets                  passes.c
  *   fill           at cheaper steps of sampling, pixels without rays       sampling.c
- *   edges          pixels whose neighbours differ, with more rays          edges.c selects, refine.c samples
- *   leaves         pixels of plants, smoothed among themselves              leaf_filter.c
- *   composite      the small targets, over the pixels                      target_grid_picture.c
- *   error estimate a few pixels, re-sampled                                error_estimate.c, plant_price.c
- * Each of them shades samples (shade.h) and sums the results in its own way; render.c runs them in turn. */
+ *   edges          pixels whose neighbours differ, with more rays          edges.c, hot_parts.c select, refine.c
+ * samples leaves         pixels of plants, smoothed among themselves              leaf_filter.c composite      the
+ * small targets, over the pixels                      target_grid_picture.c error estimate a few pixels, re-sampled
+ * error_estimate.c, plant_price.c Each of them shades samples (shade.h) and sums the results in its own way; render.c
+ * runs them in turn. */
 
 enum { tile_side_samples = 32 };
 
@@ -228,6 +228,7 @@ typedef struct Job {
     double target_variance[picture_plane_count]; /* squared errors over the pixels, summed */
     /* edges; NULL: not looked for */
     uint8_t *refine;   /* a pixel: RefineFlag */
+    uint8_t *hot;      /* a pixel: 1, hot_samples a side where refine_all is set; NULL: none */
     float   *sun;      /* a pixel: Samples.sun of the sample that truth is of */
     uint8_t *whole;    /* a pixel: 1, it has its rays at every step of sampling (sampling.c); NULL: all have */
     float  **smoothed; /* [channels]: each plane's pixels, smoothed (leaf_filter.c); NULL: they are not */
@@ -297,11 +298,16 @@ typedef enum RefineFlag {
     refine_leaves = 32,  /* a mark: plants are refined here */
     refine_scenery = 64, /* 2 a side, which join the first one; every band: borders of scenery */
     refine_shade = 128,  /* 2 a side, which join the first one, optical and MWIR: edges of shadows amid scenery */
+    refine_hot = 256,    /* with refine_all, of Job.hot and in no plane of flags: hot_samples a side, or edge_samples */
 } RefineFlag;
+enum { hot_samples = 8 };
 
 /* Marks what is always refined: bounding boxes of medium-sized targets, and the ground where a target's shadow
  * falls; and where plants are refined. After the target grids. */
 void mark_boxes(Job *job);
+/* Marks the pixels on hot parts of clutter that are narrow on the image: exhausts of engines that run or stopped
+ * lately, and what burns (hot_parts.c). STATUS_NO_MEMORY. */
+Status mark_hot_parts(Job *job, Arena *arena);
 /* The flags of a tile's pixels, row by row, including those marked. Reads the truth planes and the plane of
  * sunlight. */
 void refine_flags(uint8_t flags[hits_capacity], const Job *job, const Tile *tile);

@@ -214,6 +214,8 @@ static bool may_refine(const Job *job, const Tile *tile)
     return false;
 }
 
+static unsigned marked_hot(const Job *job, size_t px) { return job->hot && job->hot[px] ? refine_hot : 0; }
+
 void refine_tile(void *user, int worker, int task)
 {
     const Job     *job = user;
@@ -228,7 +230,8 @@ void refine_tile(void *user, int worker, int task)
 
     const unsigned   whole = refine_all | refine_step | refine_scenery;
     const Refinement ways[] = {
-        {refine_all, 0, all, edge},
+        {refine_all, refine_hot, all, edge},
+        {refine_all | refine_hot, 0, all, edge > hot_samples ? edge : hot_samples},
         {refine_step, refine_all, all, 2},
         {refine_scenery, refine_all | refine_step, all, 2},
         {refine_plants, whole, all, leaf_samples(job->request)},
@@ -249,7 +252,7 @@ void refine_tile(void *user, int worker, int task)
             if (bare && !job->picture->entity[px]) flags &= job->refine[px] | refine_all | refine_plants;
             if (job->whole && !job->whole[px]) flags = 0;
             job->refine[px] = (uint8_t)flags;
-            any |= flags;
+            any |= flags | marked_hot(job, px);
             w->counters.pixels_refined += flags != 0;
         }
     if (!any) return;
@@ -265,7 +268,8 @@ void refine_tile(void *user, int worker, int task)
         w->block.pixels = w->block.columns = 0;
         for (int y = tile.y0; y < tile.y1; y++)
             for (int x = tile.x0; x < tile.x1; x++) {
-                const unsigned flags = job->refine[pixel_index(job, x, y)];
+                const size_t   px = pixel_index(job, x, y);
+                const unsigned flags = job->refine[px] | marked_hot(job, px);
                 if ((flags & how->has) != how->has || flags & how->lacks) continue;
                 pixels_add(&w->block, x, y);
                 const int each = how->n * how->n *

@@ -182,7 +182,11 @@ static Status run_passes(Job *job, Pool *pool, Arena *arena)
         pool_run(pool, job->footprints, target_grid_task, job);
         target_grids_cover(job);
     }
-    if (looks_for_edges(request)) mark_boxes(job);
+    if (looks_for_edges(request)) {
+        mark_boxes(job);
+        const Status marked = mark_hot_parts(job, arena);
+        if (marked != STATUS_OK) return marked;
+    }
     sampling_mark(job);
     const double small_s = wall_clock_s();
     pool_run(pool, job->tiles_x * job->tiles_y, base_tile, job);

@@ -360,8 +360,9 @@ static void tables_by_name(void **state)
     log_suppress(false);
 }
 
-/* The rear area has many times as many things that may be hot as the countryside, on the same ground; what works under
- * load there or burns openly is of four kinds or more, none of them nearly half, and hardly any of it is a fire. */
+/* The rear area has many times as many things that may be hot as the countryside, on the same ground; what runs there
+ * with an exhaust that is seen (those of vans and cars are below them) or burns openly is of four kinds or more, none
+ * of them nearly half, and hardly any of it is a fire. */
 static void rear_area_is_warm(void **state)
 {
     int hot[2] = {0}, kind[CLUTTER_CLASSES] = {0}, all = 0, kinds = 0;
@@ -373,8 +374,10 @@ static void rear_area_is_warm(void **state)
         for (int n = 0; n < s.objects; n++) {
             const SceneryState *of = &s.state[s.object[n].state];
             hot[k] += (of->drives.engine > 0 && !(of->stood_s > 0)) || of->drives.burning > 0;
-            if (k == 0 || s.object[n].class == CLUTTER_HEAP || of->drives.speed_mps > 0) continue;
-            kind[s.object[n].class] += (of->drives.engine > 0.8f && !(of->stood_s > 0)) || of->drives.burning > 0;
+            const int class = s.object[n].class;
+            if (k == 0 || class == CLUTTER_HEAP || class == CLUTTER_VAN || class == CLUTTER_CAR) continue;
+            if (of->drives.speed_mps > 0) continue;
+            kind[class] += (of->drives.engine > 0 && !(of->stood_s > 0)) || of->drives.burning > 0;
         }
         scenery_free(&s);
     }

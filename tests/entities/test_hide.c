@@ -193,13 +193,13 @@ static void a_wall_hides_what_is_behind_it(void **state)
     } side = {{0, 1, 0}}; /* south is right of a nose to the east */
     assert_int_equal(hide_points(&points, &shape, side.d_body), STATUS_OK);
     CHECK(points.count > 40);
-    CHECK_NEAR(hide_occlusion(&ground, &pose, &points, &level, &box), 1, 0);
-    CHECK_NEAR(hide_occlusion(&ground, &pose, &points, &level, NULL), 0, 0);
-    CHECK_NEAR(hide_occlusion(&ground, &pose, &points, &above, &box), 0, 0);
-    CHECK_NEAR(hide_occlusion(&ground, &pose, &points, &away, &box), 0, 0);
+    CHECK_NEAR(hide_occlusion(NULL, &ground, &pose, &points, &level, &box), 1, 0);
+    CHECK_NEAR(hide_occlusion(NULL, &ground, &pose, &points, &level, NULL), 0, 0);
+    CHECK_NEAR(hide_occlusion(NULL, &ground, &pose, &points, &above, &box), 0, 0);
+    CHECK_NEAR(hide_occlusion(NULL, &ground, &pose, &points, &away, &box), 0, 0);
     /* half of it beyond the wall's end, to a cell of the points' grid */
     const HidePose half = {{16, 22, high_m}, {1, 0}};
-    CHECK_NEAR(hide_occlusion(&ground, &half, &points, &level, &box), 0.5, 0.12);
+    CHECK_NEAR(hide_occlusion(NULL, &ground, &half, &points, &level, &box), 0.5, 0.12);
     hide_shape_close(&shape), hide_shape_close(&box.shape);
     hide_ground_close(&ground);
     catalog_close(catalog);

@@ -143,6 +143,41 @@ static void shadow_of_a_wall(void **state)
     elevation_destroy(&flat.elevation);
 }
 
+/* More plants and triangles along a line than are looked at: as many as are beyond the limits are counted. */
+static void what_is_left_out_is_counted(void **state)
+{
+    (void)state;
+    enum {
+        more_plants = 100,
+        more_solids = 7,
+        plants = hide_plants_most + more_plants,
+        solids = hide_solids_most + more_solids
+    };
+    HideGround       ground = {0};
+    Landscape        flat = {0};
+    uint32_t         first[2] = {0, plants};
+    static double    corner[solids][3][3], about[solids][3];
+    static Plant     plant[plants];
+    const HidePose   pose = {{8, 8, 0}, {1, 0}};
+    const HidePoints points = {.count = 1, .p_body = {{0, 0, -1}}};
+    const HideSight  sight = {{0, 1, 0}, 100};
+    int              left_out = -1;
+    CHECK(elevation_level_create(&flat.elevation, 0, &(ElevationGrid){9, 9, -64, -64, 16, 0, 0.1}) == STATUS_OK);
+    elevation_fill(&flat.elevation.level[0], (const int32_t[81]){0});
+    elevation_build_pyramids(&flat.elevation);
+    for (int n = 0; n < plants; n++) plant[n] = (Plant){.kind = PLANT_PINE, .p_m = {8, 12, -1000}};
+    for (int n = 0; n < solids; n++) about[n][0] = 8, about[n][1] = 30, about[n][2] = 1;
+    ground.landscape = &flat;
+    ground.woods = (Woods){.nx = 1, .ny = 1, .count = plants, .plant = plant, .first = first};
+    ground.solids = (HideSolids){solids, corner, about};
+    (void)hide_occlusion(&left_out, &ground, &pose, &points, &sight, NULL);
+    assert_int_equal(left_out, more_plants + more_solids);
+    first[1] = hide_plants_most, ground.solids.count = hide_solids_most;
+    (void)hide_occlusion(&left_out, &ground, &pose, &points, &sight, NULL);
+    assert_int_equal(left_out, 0);
+    elevation_destroy(&flat.elevation);
+}
+
 /* Through the village whose houses are above: along the route none is left, and it is said. */
 static void houses_give_way_to_routes(void **state)
 {
@@ -178,6 +213,7 @@ static void houses_give_way_to_routes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(behind_buildings), cmocka_unit_test(shadow_of_a_wall),
+                                       cmocka_unit_test(what_is_left_out_is_counted),
                                        cmocka_unit_test(houses_give_way_to_routes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,7 +101,10 @@ static SceneryState state_of(int model, int does)
 {
     static const float stood_s[] = {[stopped_3_min] = 180, [stopped_1_h] = 3600, [stopped_1_day] = 86400};
     SceneryState       s = {.model = model};
-    s.drives.engine = does == idles ? 0.6f : does == works ? 0.9f : does == drives || does >= stopped_3_min ? 0.75f : 0;
+    s.drives.engine = does == idles                             ? 0.6f
+                      : does == works                           ? 0.82f
+                      : does == drives || does >= stopped_3_min ? 0.75f
+                                                                : 0;
     s.drives.speed_mps = does == drives ? 15 : 0;
     s.drives.alive = does == lives, s.drives.burning = does == burns;
     s.stood_s = does >= stopped_3_min ? stood_s[does] : 0;

@@ -77,7 +77,7 @@ def write_exr(path, planes):
 
 with tempfile.TemporaryDirectory() as folder:
     out, lines = pathlib.Path(folder), []
-    for number in range(10):  # a target of 6 x 4 pixels that is hottest in six frames, a car in three, the ground in one
+    for number in range(10):  # a target of 6 x 4 pixels that is hottest in five frames, a car in three, a fire that has a box alone in one, the ground in one
         lwir = numpy.full((60, 80), 10, numpy.float32) + 0.01 * random.random((60, 80)).astype(numpy.float32)
         zero = numpy.zeros((60, 80), numpy.uint32)
         entity, part, instance = zero.copy(), zero.copy(), zero.copy()
@@ -86,19 +86,21 @@ with tempfile.TemporaryDirectory() as folder:
         instance[10:12, 10:14], part[10:12, 10:14] = 5, 2
         lwir[10:12, 10:14] = 13 if number < 3 else 11
         lwir[50, 70] = 14 if number == 9 else 10
+        lwir[21, 21] = 14 if number == 8 else 10
         instance[32, 0:80] = 7
         instance[entity > 0], part[entity > 0] = 0, 1
         write_exr(out / f'frames/lwir/{number:06d}.exr', {'Y': lwir})
         write_exr(out / f'frames/truth/{number:06d}.exr', {'entity': entity, 'part': part, 'instance': instance, 'material': zero + 1})
-        lines.append(json.dumps({'frame': number, 'targets': [], 'clutter': [{'instance': 5, 'class': 'car'}],
+        lines.append(json.dumps({'frame': number, 'targets': [], 'clutter': [{'instance': 5, 'class': 'car'}, {'instance': 6, 'class': 'fire', 'box_px': [20, 21, 22, 22]}],
                                  'sensors': [{'width_px': 80, 'hfov_deg': 8}]}))
     (out / 'truth.jsonl').write_text('\n'.join(lines))
     (out / 'run.json').write_text('{}')
     of = {(band, what): values[0] for band, what, *values in giveaway.measure([out], ['lwir'])}
-    check('hottest: targets', of[('lwir', 'hottest_target')] == 0.6)
+    check('hottest: targets', of[('lwir', 'hottest_target')] == 0.5)
     check('hottest: cars', of[('lwir', 'hottest_car')] == 0.3)
+    check('hottest: a fire between the middles of pixels', of[('lwir', 'hottest_fire')] == 0.1)
     check('hottest: the ground', of[('lwir', 'hottest_ground')] == 0.1)
-    check('a threshold at 12 takes the cars and the spot: 4 alarms in 10 frames', of[('lwir', 'fixed_false_a_frame')] == 0.4)
+    check('a threshold at 12 takes the cars and the spots: 5 alarms in 10 frames', of[('lwir', 'fixed_false_a_frame')] == 0.5)
     check('targets', of[('all', 'targets')] == 10 and of[('all', 'centred')] == 0)
     near = 12 / (16 * 18 - 24)  # a row of plants through the ring of 6 pixels about the target
     check('plants beside targets', abs(of[('all', 'plants_beside_targets')] - near) < 0.01)
