@@ -166,51 +166,6 @@ static F32x8 wander_eight(uint64_t seed, const double x_m[8], const double y_m[8
 
 /* ---- synthetic cover ------------------------------------------------------------------------ */
 
-static const double track_half_m = 2, hedge_half_m = 1.5, hedge_beyond_m = 3.6, border_wander_m = 0.6;
-
-/* Class on the border of two fields at a position near it; SURFACE_NONE: that of the field. crop: gets the field of the
- * position after the border has wandered. */
-static SurfaceClass border_surface(int32_t *crop, PlotCell *cell, uint64_t seed, int site, int other, float x_m,
-                                   float y_m, float wander)
-{
-    const PlotBorder border = plot_border(cell, seed, site, other, x_m, y_m);
-    *crop = cell->crop[site];
-    const double off_m = border_wander_m * (double)wander;
-    double       here_m = border.away_m + (border.first ? off_m : -off_m);
-    if (here_m < 0) *crop = cell->crop[other], here_m = -here_m;
-    const double edge_m = 0.5 * off_m; /* edges of tracks and hedges wander less than borders */
-    if (border.track && here_m + edge_m < track_half_m) return SURFACE_TRACK;
-    if (border.hedge && border.track && here_m > track_half_m && here_m + edge_m < hedge_beyond_m) return SURFACE_SCRUB;
-    if (border.hedge && !border.track && here_m + edge_m < hedge_half_m) return SURFACE_SCRUB;
-    if (border.track && here_m + edge_m < track_half_m + 0.7) return SURFACE_GRASS;
-    return SURFACE_NONE;
-}
-
-/* Lanes within reach of a border between their field and another. other: site beyond the nearest border. Distances to
- * perpendicular bisectors are compared by their squares, without divisions. */
-static unsigned near_border(I32x8 *other, const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, F32x8 least)
-{
-    const F32x8  own_x = f32x8_gather(cell->x_m, site), own_y = f32x8_gather(cell->y_m, site);
-    const I32x8  own = plot_look(cell->field, site);
-    const double reach_m = 2 * (hedge_beyond_m + border_wander_m);
-    F32x8 best = f32x8_set(reach_m * reach_m * 1.01), best_apart = f32x8_set(1); /* 1.01: a margin for rounding */
-    F32x8 near = f32x8_set(0);
-    I32x8 found = i32x8_set(0);
-    for (int n = 0; n < plot_sites; n++) {
-        const F32x8 sx = f32x8_set((double)cell->x_m[n]), sy = f32x8_set((double)cell->y_m[n]);
-        const F32x8 dx = x - sx, dy = y - sy, ax = sx - own_x, ay = sy - own_y;
-        const F32x8 more = f32x8_fma(dx, dx, dy * dy) - least, apart = f32x8_fma(ax, ax, ay * ay);
-        const F32x8 square = more * more, same = i32x8_equal(own, i32x8_set(cell->field[n]));
-        const F32x8 nearer = f32x8_and_not(f32x8_less(square * best_apart, best * apart), same);
-        best = f32x8_select(nearer, square, best);
-        best_apart = f32x8_select(nearer, apart, best_apart);
-        found = i32x8_select(nearer, i32x8_set(n), found);
-        near = f32x8_or(near, nearer);
-    }
-    *other = found;
-    return f32x8_bits(near);
-}
-
 void invented_fields(SlowFields *out, const InventedGround *ground, const double x_m[8], const double y_m[8],
                      F32x8 slope)
 {
@@ -241,70 +196,47 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
     marsh = f32x8_fma(f32x8_set(0.22), patch, marsh);
     const F32x8 dry_from = f32x8_set(-0.1), soil_from = f32x8_set(-0.16);
 
-    double  i[8], j[8], bent_x[8], bent_y[8];
-    float   in_x[8], in_y[8], wander_of[8], patch_of[8];
-    int32_t site_of[8], other_of[8], found[8], cell_of[8];
-    F32x8   x, y;
-    I32x8 class = i32x8_set(SURFACE_NONE), sites = i32x8_set(0), others = i32x8_set(0);
-    unsigned near = 0, touched = 0;
+    double     bent_x[8], bent_y[8];
+    float      wander_of[8] = {0}, patch_of[8];
+    int32_t    found[8], cell_of[8];
+    unsigned   touched = 0;
+    PlotPlaces plots;
     plot_bent(bent_x, bent_y, seed, x_m, y_m, slow->bend_x, slow->bend_y);
-    plot_cells_of(i, j, &x, &y, bent_x, bent_y);
-    for (unsigned left = lanes, same; left; left &= ~same) {
-        same = plot_cell_lanes(i, j, left);
-        const int       first = __builtin_ctz(left);
-        const PlotCell *cell = plot_cell_at(seed, (int64_t)i[first], (int64_t)j[first]);
-        I32x8           site, other;
-        const F32x8     least = plot_nearest(&site, cell, x, y), here = f32x8_mask(same);
-        class = i32x8_select(here, plot_look(cell->crop, site), class);
-        sites = i32x8_select(here, site, sites);
-        near |= near_border(&other, cell, x, y, site, least) & same;
-        others = i32x8_select(here, other, others);
-    }
+    plots_find(&plots, seed, bent_x, bent_y, lanes);
     if (ground->ways) {
         const I32x8 touches = ways_cells(ground->ways, x_m, y_m);
         touched = f32x8_bits(i32x8_greater(touches, i32x8_set(-1))) & lanes;
         if (touched) i32x8_store(cell_of, touches);
     }
 
-    /* the finest noise is evaluated only for lanes near a border */
+    /* the finest noise is evaluated only for lanes whose class it can change */
     F32x8 close = f32x8_less(f32x8_abs(grown), step);
     close = f32x8_or(close, f32x8_less(f32x8_abs(grown - dry_from), step));
     close = f32x8_or(close, f32x8_less(f32x8_abs(stony), step));
     close = f32x8_or(close, f32x8_less(f32x8_abs(stony - soil_from), step));
     close = f32x8_or(close, f32x8_less(f32x8_abs(marsh), step));
-    const unsigned wanders = (f32x8_bits(close) | near | touched) & lanes;
+    const unsigned wanders = (f32x8_bits(close) | (plots.near & ~plots.sure) | touched) & lanes;
+    F32x8          wander = zero;
     if (wanders) {
-        const F32x8 wander = f32x8_and(wander_eight(seed, x_m, y_m), f32x8_mask(wanders));
+        wander = f32x8_and(wander_eight(seed, x_m, y_m), f32x8_mask(wanders));
         grown = f32x8_fma(step, wander, grown);
         stony = f32x8_fma(step, wander, stony);
         marsh = f32x8_fma(step, wander, marsh);
         f32x8_store(wander_of, wander);
     }
     const F32x8 rock = f32x8_greater(stony, zero);
-    if (near & ~f32x8_bits(rock)) {
-        i32x8_store(site_of, sites), i32x8_store(other_of, others);
-        i32x8_store(found, class);
-        f32x8_store(in_x, x), f32x8_store(in_y, y);
-    }
-    SurfaceClass on_border[8];
-    unsigned     bordered = 0;
-    for (unsigned left = near & ~f32x8_bits(rock); left; left &= left - 1) {
-        const int k = __builtin_ctz(left);
-        PlotCell *cell = plot_cell_at(seed, (int64_t)i[k], (int64_t)j[k]);
-        on_border[k] = border_surface(&found[k], cell, seed, site_of[k], other_of[k], in_x[k], in_y[k], wander_of[k]);
-        if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
-    }
-    if (near & ~f32x8_bits(rock)) class = i32x8_load(found);
+    const unsigned on_border = plots.near & ~f32x8_bits(rock);
+    const I32x8    border = on_border ? plots_on_borders(&plots, wander, on_border) : i32x8_set(SURFACE_NONE);
 
+    I32x8 class = plots.crop;
     class = i32x8_select(f32x8_greater(grown, dry_from), i32x8_set(SURFACE_DRY_GRASS), class);
     class = i32x8_select(f32x8_greater(marsh, zero), i32x8_set(SURFACE_WETLAND), class);
     class = i32x8_select(f32x8_greater(grown, zero), i32x8_set(SURFACE_SCRUB), class);
     const F32x8 worn = f32x8_less(wet, f32x8_set(-0.2));
     class = i32x8_select(f32x8_and(worn, f32x8_greater(stony, soil_from)), i32x8_set(SURFACE_BARE_SOIL), class);
     class = i32x8_select(rock, i32x8_set(SURFACE_ROCK), class);
+    class = i32x8_select(i32x8_equal(border, i32x8_set(SURFACE_NONE)), class, border);
     i32x8_store(found, class);
-    for (; bordered; bordered &= bordered - 1)
-        found[__builtin_ctz(bordered)] = (int32_t)on_border[__builtin_ctz(bordered)];
     if (touched) f32x8_store(patch_of, patch);
     for (; touched; touched &= touched - 1) {
         const int k = __builtin_ctz(touched);

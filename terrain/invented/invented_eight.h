@@ -112,7 +112,7 @@ static inline F32x8 noise_pair_eight(F32x8 *second, uint64_t seed, double wavele
 /* ---- fields ------------------------------------------------------------------------------- */
 
 static const double plot_m = 160;
-enum { plot_sites = 9, plot_cells_kept = 128 };
+enum { plot_sites = 9, plot_cells_kept = 128, plot_parts = 8 /* of a cell, along a side */ };
 
 /* The border between two sites; it is computed when it is first needed. */
 typedef struct PlotEdge {
@@ -132,6 +132,9 @@ typedef struct PlotCell {
     int32_t  crop[plot_sites];  /* SurfaceClass */
     float    across_x[plot_sites], across_y[plot_sites]; /* unit vector across the rows of its field */
     PlotEdge edge[plot_sites][plot_sites];
+    /* of each part of the cell, when it is first needed: bits of the sites that can be nearest to a place in it, or
+     * beyond a border that is; 0: not known */
+    uint16_t sites_about[plot_parts * plot_parts];
 } PlotCell;
 
 /* The border between two sites of different fields, at a place in the first of them. */
@@ -141,7 +144,9 @@ typedef struct PlotBorder {
     bool   track, hedge; /* whether a track, and a hedge, runs along the border */
 } PlotBorder;
 
-PlotBorder plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
+/* Of two sites of different fields. */
+const PlotEdge *plot_edge(PlotCell *cell, uint64_t seed, int site, int other);
+PlotBorder      plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
 
 /* The nearest border about a place, the unit vector away from it, but for the bend, and a number of its two fields. */
 bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m);
@@ -238,6 +243,22 @@ static inline F32x8 plot_nearest(I32x8 *site, const PlotCell *cell, F32x8 x_m, F
 }
 
 static inline I32x8 plot_look(const int32_t value[plot_sites], I32x8 site) { return i32x8_gather(value, site); }
+
+/* Eight places among the fields. */
+typedef struct PlotPlaces {
+    I32x8    crop; /* of the field: SurfaceClass */
+    unsigned near; /* lanes within reach of a border between their field and another; the rest is of these lanes */
+    unsigned sure; /* whose class on the border does not depend on how it wanders */
+    unsigned first, track, hedge; /* as in PlotBorder */
+    I32x8    beyond;              /* crop of the field beyond the border */
+    double   away_m[8];           /* distance of the border */
+} PlotPlaces;
+
+/* Of places on the plane of fields, those of these lanes. */
+void plots_find(PlotPlaces *out, uint64_t seed, const double bent_x[8], const double bent_y[8], unsigned lanes);
+/* Classes on borders that wander, -1 .. 1, of these lanes, which are near some; SURFACE_NONE: that of the field. Crops
+ * become those of the fields that the places are in then. */
+I32x8 plots_on_borders(PlotPlaces *places, F32x8 wander, unsigned lanes);
 
 /* ---- classes ------------------------------------------------------------------------------ */
 
