@@ -395,7 +395,8 @@ void recall_ground(Worker *w, const Job *job)
         hits->p_enu[2][i] -= visibility_lift_at(job->scene.visibility, p_enu);
         w->samples.sun[i] = job->sun[px];
     }
-    landscape_surfaces(hits->surface, job->scene.world->landscape, hits->count, hits->p_enu[0], hits->p_enu[1]);
+    surface_cells_at(hits->surface, job->scene.world->cells, job->scene.world->landscape, hits->count, hits->p_enu[0],
+                     hits->p_enu[1]);
     for (int i = 0; i < hits->count; i++)
         if (visibility_is_beyond(job->scene.visibility, hits->p_enu[0][i], hits->p_enu[1][i]))
             hits->surface[i] = p->cover[pixel_index(job, block->x[i], block->y[i])];

@@ -67,7 +67,7 @@ void corner_materials(uint16_t out[corner_capacity], const Job *job, const Tile 
         for (; at < corners && count < corners_together; at++)
             if (wanted[at]) corner[count++] = (uint16_t)at;
         place_corners(x_m, y_m, job, tile, corner, count);
-        landscape_surfaces(surface, job->scene.world->landscape, count, x_m, y_m);
+        surface_cells_at(surface, job->scene.world->cells, job->scene.world->landscape, count, x_m, y_m);
         for (int k = 0; k < count; k++)
             out[corner[k]] = surface[k] == SURFACE_NONE ? material_unknown : (uint16_t)materials->surface[surface[k]];
     }

@@ -124,15 +124,16 @@ static unsigned coast_surfaces(int32_t surface[8], const Coast *coast, const dou
 }
 
 /* What lies on the ground, such as roads, wherever there is ground. */
-static void lay_over(uint8_t *surface, const LandscapeOver *over, int count, const double *x_m, const double *y_m)
+void cover_lay_over(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
 {
-    for (int k = 0; k < count; k++) {
+    const LandscapeOver *over = &landscape->over;
+    for (int k = 0; k < count && over->of; k++) {
         const int laid = surface[k] == SURFACE_NONE ? SURFACE_NONE : over->surface_at(over->of, x_m[k], y_m[k]);
         if (laid != SURFACE_NONE) surface[k] = (uint8_t)laid;
     }
 }
 
-/* nodes: those about the places; may be NULL. */
+/* Without what lies on it. nodes: those about the places; may be NULL. */
 static void find_surfaces(uint8_t *surface, const Landscape *landscape, const SlowNodes *nodes, int count,
                           const double *x_m, const double *y_m)
 {
@@ -155,12 +156,17 @@ static void find_surfaces(uint8_t *surface, const Landscape *landscape, const Sl
         }
         for (int k = 0; k < some; k++) surface[first + k] = (uint8_t)found[k];
     }
-    if (landscape->over.of) lay_over(surface, &landscape->over, count, x_m, y_m);
+}
+
+void cover_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
+{
+    find_surfaces(surface, landscape, NULL, count, x_m, y_m);
 }
 
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
 {
-    find_surfaces(surface, landscape, NULL, count, x_m, y_m);
+    cover_surfaces(surface, landscape, count, x_m, y_m);
+    cover_lay_over(surface, landscape, count, x_m, y_m);
 }
 
 /* Whether a place of a square is looked up first: a quarter of the places in a regular pattern; half of them in a small
@@ -203,6 +209,7 @@ void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int
                 if (looks_first(side, row, column) == (pass == 0))
                     place[count] = k, x[count] = x_m[k], y[count++] = y_m[k];
         find_surfaces(found, landscape, &nodes, count, x, y);
+        cover_lay_over(found, landscape, count, x, y);
         for (int k = 0; k < count; k++) surface[place[k]] = found[k], differ |= found[k] != found[0];
     }
     for (int k = 0; k < side * side && !differ; k++) surface[k] = found[0];

@@ -20,7 +20,7 @@ unsigned invented_grounded(const Elevation *elevation, const double x_m[8], cons
 
 /* ---- slope ---------------------------------------------------------------------------------- */
 
-static const double arm_m = 10;
+static const double arm_m = invented_arm_m;
 
 /* Slope over some 20 m, so that the cover does not follow the edges of single triangles; 0 at the very rim. */
 static double slope_about(const Elevation *elevation, double x_m, double y_m)
@@ -177,24 +177,67 @@ void invented_fields(SlowFields *out, const InventedGround *ground, const double
     plot_bend_by(&out->bend_x, &out->bend_y, seed, x_m, y_m);
 }
 
-void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8], const double y_m[8],
-                       const SlowFields *slow, unsigned lanes)
+static const double wild_wander = 0.02; /* moves the borders of wild patches by some metres */
+/* from where on ground is wild, beside 0 */
+static const double dry_grass_from = -0.1, bare_soil_from = -0.16, worn_below = -0.2;
+
+/* Where each is above 0 scrub grows, rock shows, and wet grass grows. */
+typedef struct Wild {
+    F32x8 grown, stony, marsh;
+} Wild;
+
+/* Wild patches are wider where it is steep; rock shows in their middles and on worn crests; scrub and wet grass grow in
+ * hollows. All three never fall as the fields rise, but that rock is less where it is wet. */
+static inline Wild wild_of(const SlowFields *slow)
 {
-    static const double wild_wander = 0.02; /* moves the borders of wild patches by some metres */
-    const uint64_t      seed = ground->seed;
-    const F32x8         zero = f32x8_set(0), step = f32x8_set(wild_wander);
-    /* wild patches are wider where it is steep; rock shows in their middles and on worn crests; scrub and wet grass
-     * grow in hollows */
     const F32x8 middle = slow->middle, patch = slow->patch, wet = slow->wet, slope = slow->slope;
     F32x8       wild = f32x8_fma(f32x8_set(0.5), middle, slow->large);
     wild = f32x8_fma(f32x8_set(0.14), patch, wild);
     wild = f32x8_fma(f32x8_set(4), slope, wild);
-    F32x8 grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, zero), wild) - f32x8_set(0.88);
-    F32x8 stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
-    stony = f32x8_fma(f32x8_set(0.12), f32x8_clamp(slope * f32x8_set(5), 0, 1), stony);
-    F32x8 marsh = f32x8_fma(f32x8_set(0.35), middle, wet) - f32x8_set(0.92);
-    marsh = f32x8_fma(f32x8_set(0.22), patch, marsh);
-    const F32x8 dry_from = f32x8_set(-0.1), soil_from = f32x8_set(-0.16);
+    const F32x8 stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
+    const F32x8 marsh = f32x8_fma(f32x8_set(0.35), middle, wet) - f32x8_set(0.92);
+    return (Wild){.grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, f32x8_set(0)), wild) - f32x8_set(0.88),
+                  .stony = f32x8_fma(f32x8_set(0.12), f32x8_clamp(slope * f32x8_set(5), 0, 1), stony),
+                  .marsh = f32x8_fma(f32x8_set(0.22), patch, marsh)};
+}
+
+bool invented_wild_alike(const WildEnds *e)
+{
+    enum { low, high, low_wet, high_dry };
+    /* lanes: all low, all high; the same with the other end of `wet`, for what falls with it */
+    const int    end[4] = {0, 1, 0, 1}, wet_end[4] = {0, 1, 1, 0};
+    float        field[5][8] = {{0}}, grown[8], stony[8], marsh[8];
+    const double off = wild_wander + 1e-4;
+    for (int k = 0; k < 4; k++) {
+        field[0][k] = e->large[end[k]], field[1][k] = e->middle[end[k]], field[2][k] = e->patch[end[k]];
+        field[3][k] = e->slope[end[k]], field[4][k] = e->wet[wet_end[k]];
+    }
+    const Wild wild = wild_of(&(SlowFields){.large = f32x8_load(field[0]),
+                                            .middle = f32x8_load(field[1]),
+                                            .patch = f32x8_load(field[2]),
+                                            .slope = f32x8_load(field[3]),
+                                            .wet = f32x8_load(field[4])});
+    f32x8_store(grown, wild.grown), f32x8_store(stony, wild.stony), f32x8_store(marsh, wild.marsh);
+    const double from[6][3] = {{(double)grown[low], (double)grown[high], 0},
+                              {(double)grown[low], (double)grown[high], dry_grass_from},
+                              {(double)marsh[low], (double)marsh[high], 0},
+                              {(double)stony[low_wet], (double)stony[high_dry], 0},
+                              {(double)stony[low_wet], (double)stony[high_dry], bare_soil_from},
+                              {(double)e->wet[0], (double)e->wet[1], worn_below}};
+    const int    rules = (double)stony[high_dry] + off < bare_soil_from ? 5 : 6; /* nothing there to wear off */
+    for (int n = 0; n < rules; n++)
+        if (from[n][0] - off <= from[n][2] && from[n][1] + off >= from[n][2]) return false;
+    return true;
+}
+
+void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8], const double y_m[8],
+                       const SlowFields *slow, unsigned lanes)
+{
+    const uint64_t seed = ground->seed;
+    const F32x8    zero = f32x8_set(0), step = f32x8_set(wild_wander);
+    const F32x8    dry_from = f32x8_set(dry_grass_from), soil_from = f32x8_set(bare_soil_from);
+    const Wild     wild = wild_of(slow);
+    F32x8          grown = wild.grown, stony = wild.stony, marsh = wild.marsh;
 
     double     bent_x[8], bent_y[8];
     float      wander_of[8] = {0}, patch_of[8];
@@ -232,12 +275,12 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
     class = i32x8_select(f32x8_greater(grown, dry_from), i32x8_set(SURFACE_DRY_GRASS), class);
     class = i32x8_select(f32x8_greater(marsh, zero), i32x8_set(SURFACE_WETLAND), class);
     class = i32x8_select(f32x8_greater(grown, zero), i32x8_set(SURFACE_SCRUB), class);
-    const F32x8 worn = f32x8_less(wet, f32x8_set(-0.2));
+    const F32x8 worn = f32x8_less(slow->wet, f32x8_set(worn_below));
     class = i32x8_select(f32x8_and(worn, f32x8_greater(stony, soil_from)), i32x8_set(SURFACE_BARE_SOIL), class);
     class = i32x8_select(rock, i32x8_set(SURFACE_ROCK), class);
     class = i32x8_select(i32x8_equal(border, i32x8_set(SURFACE_NONE)), class, border);
     i32x8_store(found, class);
-    if (touched) f32x8_store(patch_of, patch);
+    if (touched) f32x8_store(patch_of, slow->patch);
     for (; touched; touched &= touched - 1) {
         const int k = __builtin_ctz(touched);
         found[k] = (int32_t)ways_surface(ground->ways, cell_of[k], x_m[k], y_m[k], (SurfaceClass)found[k], wander_of[k],

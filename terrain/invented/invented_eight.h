@@ -161,17 +161,18 @@ static inline void plot_turn(double *cosine, double *sine, uint64_t seed)
     *cosine = of[h >> 61][swap], *sine = of[h >> 61][1 - swap];
 }
 
+static const double plot_bend_wave_m[] = {2300, 330}, plot_bend_away_m[] = {260, 28};
+
 /* How far eight places are moved by the bend of the plane on which fields are laid out: it is turned, and bent over
  * hundreds of metres. */
 static inline void plot_bend_by(F32x8 *by_x, F32x8 *by_y, uint64_t seed, const double x_m[8], const double y_m[8])
 {
-    static const double wave_m[] = {2300, 330}, away_m[] = {260, 28};
-    F32x8               dx = f32x8_set(0), dy = f32x8_set(0);
+    F32x8 dx = f32x8_set(0), dy = f32x8_set(0);
     for (int n = 0; n < 2; n++) {
         F32x8 wave_y;
-        dx = f32x8_fma(f32x8_set(away_m[n]), noise_pair_eight(&wave_y, seed + 26 + (uint64_t)n, wave_m[n], x_m, y_m),
-                       dx);
-        dy = f32x8_fma(f32x8_set(away_m[n]), wave_y, dy);
+        dx = f32x8_fma(f32x8_set(plot_bend_away_m[n]),
+                       noise_pair_eight(&wave_y, seed + 26 + (uint64_t)n, plot_bend_wave_m[n], x_m, y_m), dx);
+        dy = f32x8_fma(f32x8_set(plot_bend_away_m[n]), wave_y, dy);
     }
     *by_x = dx, *by_y = dy;
 }
@@ -259,6 +260,8 @@ void plots_find(PlotPlaces *out, uint64_t seed, const double bent_x[8], const do
 /* Classes on borders that wander, -1 .. 1, of these lanes, which are near some; SURFACE_NONE: that of the field. Crops
  * become those of the fields that the places are in then. */
 I32x8 plots_on_borders(PlotPlaces *places, F32x8 wander, unsigned lanes);
+/* Whether all places this near one on the plane of fields are of one field, and no border changes their class. */
+bool plots_alike(uint64_t seed, const double bent_m[2], double radius_m);
 
 /* ---- classes ------------------------------------------------------------------------------ */
 
@@ -281,8 +284,17 @@ typedef struct SlowNodes {
 /* Lanes of places where there is ground, that is, inside the outermost level, which encloses the others. NaN: no
  * ground. */
 unsigned invented_grounded(const Elevation *elevation, const double x_m[8], const double y_m[8]);
-/* Slope of the terrain about the places, without the tilt of the plane far from its origin. */
+static const double invented_arm_m = 10;
+/* Slope of the terrain about the places, over twice this length, without the tilt of the plane far from its origin. */
 F32x8 invented_slopes(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes);
+
+/* Lowest and highest of slow fields over an area. */
+typedef struct WildEnds {
+    float large[2], middle[2], patch[2], slope[2], wet[2];
+} WildEnds;
+
+/* Whether no such field makes one place of the area wild and another not, or otherwise. */
+bool invented_wild_alike(const WildEnds *ends);
 
 void invented_fields(SlowFields *out, const InventedGround *ground, const double x_m[8], const double y_m[8],
                      F32x8 slope);

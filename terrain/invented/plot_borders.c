@@ -110,15 +110,20 @@ static void borders_away(double away_m[8], const PlotCell *cell, int site, int o
     }
 }
 
+/* By how much a border and its edges wander, together, and a margin. */
+static const double wander_most_m = 1.5 * border_wander_m + 1e-3;
+
+/* How far from the border it changes classes, before it wanders. */
+static double reach_of(const PlotEdge *edge)
+{
+    return edge->track ? (edge->hedge ? hedge_beyond_m : track_half_m + verge_m) : edge->hedge ? hedge_half_m : 0;
+}
+
 /* Adds what places know of the border between two sites: all of these lanes are near it. */
 static void note_border(PlotPlaces *out, const double away_m[8], const PlotCell *cell, const PlotEdge *edge, int other,
                         unsigned lanes)
 {
-    /* by how much a border and its edges wander, together, and a margin */
-    static const double most_m = 1.5 * border_wander_m + 1e-3;
-    const double        widest_m = edge->track ? (edge->hedge ? hedge_beyond_m : track_half_m + verge_m)
-                                   : edge->hedge ? hedge_half_m
-                                                 : 0;
+    const double reach_m = reach_of(edge) + wander_most_m;
     out->first |= edge->first ? lanes : 0;
     out->track |= edge->track ? lanes : 0;
     out->hedge |= edge->hedge ? lanes : 0;
@@ -126,7 +131,7 @@ static void note_border(PlotPlaces *out, const double away_m[8], const PlotCell 
     for (unsigned left = lanes; left; left &= left - 1) {
         const int    k = __builtin_ctz(left);
         const double m = out->away_m[k] = away_m[k];
-        if (m > widest_m + most_m || (edge->track && m >= 0 && m < track_half_m - most_m)) out->sure |= 1u << k;
+        if (m > reach_m || (edge->track && m >= 0 && m < track_half_m - wander_most_m)) out->sure |= 1u << k;
     }
 }
 
@@ -190,4 +195,33 @@ I32x8 plots_on_borders(PlotPlaces *places, F32x8 wander, unsigned lanes)
     I32x8 class = i32x8_select(f32x8_mask(track & on_verge), i32x8_set(SURFACE_GRASS), i32x8_set(SURFACE_NONE));
     class = i32x8_select(f32x8_mask(scrub), i32x8_set(SURFACE_SCRUB), class);
     return i32x8_select(f32x8_mask(track & on_track), i32x8_set(SURFACE_TRACK), class);
+}
+
+/* ---- areas ------------------------------------------------------------------------------------ */
+
+bool plots_alike(uint64_t seed, const double bent_m[2], double radius_m)
+{
+    const double rounding_m = 0.1, i = floor(bent_m[0] / plot_m), j = floor(bent_m[1] / plot_m);
+    PlotCell    *cell = plot_cell_at(seed, (int64_t)i, (int64_t)j);
+    double       square[plot_sites], nearest_m = INFINITY;
+    const double at_m[2] = {bent_m[0] - i * plot_m, bent_m[1] - j * plot_m};
+    for (int n = 0; n < plot_sites; n++) {
+        const double dx = at_m[0] - (double)cell->x_m[n], dy = at_m[1] - (double)cell->y_m[n];
+        square[n] = dx * dx + dy * dy;
+        nearest_m = fmin(nearest_m, sqrt(square[n]));
+    }
+    for (int own = 0, field = -1; own < plot_sites; own++) {
+        if (sqrt(square[own]) > nearest_m + 2 * radius_m + rounding_m) continue; /* nearest to no place there */
+        if (field >= 0 && cell->field[own] != field) return false;
+        field = cell->field[own];
+        for (int n = 0; n < plot_sites; n++) {
+            if (cell->field[n] == field) continue;
+            const double apart_m =
+                hypot((double)cell->x_m[n] - (double)cell->x_m[own], (double)cell->y_m[n] - (double)cell->y_m[own]);
+            const double away_m = 0.5 * (square[n] - square[own]) / apart_m - radius_m - rounding_m;
+            if (away_m > hedge_beyond_m + wander_most_m) continue;
+            if (!(away_m > reach_of(plot_edge(cell, seed, own, n)) + wander_most_m)) return false;
+        }
+    }
+    return true;
 }
