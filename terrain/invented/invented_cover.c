@@ -175,6 +175,7 @@ void invented_fields(SlowFields *out, const InventedGround *ground, const double
     out->large = noise_eight(seed + 10, 310, x_m, y_m);
     out->slope = slope;
     plot_bend_by(&out->bend_x, &out->bend_y, seed, x_m, y_m);
+    out->tame = false;
 }
 
 static const double wild_wander = 0.02; /* moves the borders of wild patches by some metres */
@@ -230,22 +231,42 @@ bool invented_wild_alike(const WildEnds *e)
     return true;
 }
 
+/* Lanes on whose class the finest noise may bear, by which the borders of wild patches wander. */
+static unsigned close_to_wild(const Wild *wild)
+{
+    const F32x8 step = f32x8_set(wild_wander), dry_from = f32x8_set(dry_grass_from), soil_from = f32x8_set(bare_soil_from);
+    F32x8       close = f32x8_less(f32x8_abs(wild->grown), step);
+    close = f32x8_or(close, f32x8_less(f32x8_abs(wild->grown - dry_from), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(wild->stony), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(wild->stony - soil_from), step));
+    return f32x8_bits(f32x8_or(close, f32x8_less(f32x8_abs(wild->marsh), step)));
+}
+
+/* Classes of wild patches over those of fields. */
+static I32x8 grow_wild(I32x8 class, const Wild *wild, F32x8 wet)
+{
+    const F32x8 zero = f32x8_set(0), worn = f32x8_less(wet, f32x8_set(worn_below));
+    const F32x8 soil = f32x8_and(worn, f32x8_greater(wild->stony, f32x8_set(bare_soil_from)));
+    class = i32x8_select(f32x8_greater(wild->grown, f32x8_set(dry_grass_from)), i32x8_set(SURFACE_DRY_GRASS), class);
+    class = i32x8_select(f32x8_greater(wild->marsh, zero), i32x8_set(SURFACE_WETLAND), class);
+    class = i32x8_select(f32x8_greater(wild->grown, zero), i32x8_set(SURFACE_SCRUB), class);
+    class = i32x8_select(soil, i32x8_set(SURFACE_BARE_SOIL), class);
+    return i32x8_select(f32x8_greater(wild->stony, zero), i32x8_set(SURFACE_ROCK), class);
+}
+
 void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8], const double y_m[8],
                        const SlowFields *slow, unsigned lanes)
 {
     const uint64_t seed = ground->seed;
-    const F32x8    zero = f32x8_set(0), step = f32x8_set(wild_wander);
-    const F32x8    dry_from = f32x8_set(dry_grass_from), soil_from = f32x8_set(bare_soil_from);
-    const Wild     wild = wild_of(slow);
-    F32x8          grown = wild.grown, stony = wild.stony, marsh = wild.marsh;
-
-    double     bent_x[8], bent_y[8];
-    float      wander_of[8] = {0}, patch_of[8];
-    int32_t    found[8], cell_of[8];
-    unsigned   touched = 0;
-    PlotPlaces plots;
+    double         bent_x[8], bent_y[8];
+    float          wander_of[8] = {0}, patch_of[8];
+    int32_t        found[8], cell_of[8];
+    unsigned       touched = 0;
+    PlotPlaces     plots;
+    Wild           wild;
     plot_bent(bent_x, bent_y, seed, x_m, y_m, slow->bend_x, slow->bend_y);
     plots_find(&plots, seed, bent_x, bent_y, lanes);
+    if (!slow->tame) wild = wild_of(slow);
     if (ground->ways) {
         const I32x8 touches = ways_cells(ground->ways, x_m, y_m);
         touched = f32x8_bits(i32x8_greater(touches, i32x8_set(-1))) & lanes;
@@ -253,31 +274,24 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
     }
 
     /* the finest noise is evaluated only for lanes whose class it can change */
-    F32x8 close = f32x8_less(f32x8_abs(grown), step);
-    close = f32x8_or(close, f32x8_less(f32x8_abs(grown - dry_from), step));
-    close = f32x8_or(close, f32x8_less(f32x8_abs(stony), step));
-    close = f32x8_or(close, f32x8_less(f32x8_abs(stony - soil_from), step));
-    close = f32x8_or(close, f32x8_less(f32x8_abs(marsh), step));
-    const unsigned wanders = (f32x8_bits(close) | (plots.near & ~plots.sure) | touched) & lanes;
-    F32x8          wander = zero;
+    const unsigned close = slow->tame ? 0 : close_to_wild(&wild);
+    const unsigned wanders = (close | (plots.near & ~plots.sure) | touched) & lanes;
+    F32x8          wander = f32x8_set(0);
     if (wanders) {
+        const F32x8 step = f32x8_set(wild_wander);
         wander = f32x8_and(wander_eight(seed, x_m, y_m), f32x8_mask(wanders));
-        grown = f32x8_fma(step, wander, grown);
-        stony = f32x8_fma(step, wander, stony);
-        marsh = f32x8_fma(step, wander, marsh);
+        if (!slow->tame) {
+            wild.grown = f32x8_fma(step, wander, wild.grown);
+            wild.stony = f32x8_fma(step, wander, wild.stony);
+            wild.marsh = f32x8_fma(step, wander, wild.marsh);
+        }
         f32x8_store(wander_of, wander);
     }
-    const F32x8 rock = f32x8_greater(stony, zero);
-    const unsigned on_border = plots.near & ~f32x8_bits(rock);
+    const unsigned rock = slow->tame ? 0 : f32x8_bits(f32x8_greater(wild.stony, f32x8_set(0)));
+    const unsigned on_border = plots.near & ~rock;
     const I32x8    border = on_border ? plots_on_borders(&plots, wander, on_border) : i32x8_set(SURFACE_NONE);
 
-    I32x8 class = plots.crop;
-    class = i32x8_select(f32x8_greater(grown, dry_from), i32x8_set(SURFACE_DRY_GRASS), class);
-    class = i32x8_select(f32x8_greater(marsh, zero), i32x8_set(SURFACE_WETLAND), class);
-    class = i32x8_select(f32x8_greater(grown, zero), i32x8_set(SURFACE_SCRUB), class);
-    const F32x8 worn = f32x8_less(slow->wet, f32x8_set(worn_below));
-    class = i32x8_select(f32x8_and(worn, f32x8_greater(stony, soil_from)), i32x8_set(SURFACE_BARE_SOIL), class);
-    class = i32x8_select(rock, i32x8_set(SURFACE_ROCK), class);
+    I32x8 class = slow->tame ? plots.crop : grow_wild(plots.crop, &wild, slow->wet);
     class = i32x8_select(i32x8_equal(border, i32x8_set(SURFACE_NONE)), class, border);
     i32x8_store(found, class);
     if (touched) f32x8_store(patch_of, slow->patch);
@@ -288,6 +302,30 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
     }
     for (int k = 0; k < 8; k++)
         if (lanes >> k & 1) surface[k] = found[k];
+}
+
+static inline float greatest(F32x8 x)
+{
+    float of[8], most = -INFINITY;
+    f32x8_store(of, x);
+    for (int k = 0; k < 8; k++) most = of[k] > most ? of[k] : most;
+    return most;
+}
+
+/* Whether nothing grows wild, and no rock shows, at any place whose fields are between these. */
+static bool all_tame(const SlowFields *slow)
+{
+    const F32x8 wet = f32x8_set((double)greatest(slow->wet)), dry = f32x8_set(-(double)greatest(-slow->wet));
+    SlowFields  most = {.large = f32x8_set((double)greatest(slow->large)),
+                        .middle = f32x8_set((double)greatest(slow->middle)),
+                        .patch = f32x8_set((double)greatest(slow->patch)),
+                        .slope = f32x8_set((double)greatest(slow->slope)),
+                        .wet = wet};
+    const double off = wild_wander + 1e-4;
+    const Wild   wild = wild_of(&most);
+    most.wet = dry;
+    return (double)greatest(wild.grown) + off < dry_grass_from && (double)greatest(wild.marsh) + off < 0 &&
+           (double)greatest(wild_of(&most).stony) + off < bare_soil_from;
 }
 
 /* ---- a few metres --------------------------------------------------------------------------- */
@@ -333,6 +371,7 @@ void invented_nodes(SlowNodes *out, const InventedGround *ground, const Elevatio
     if (invented_grounded(elevation, x, y) != 0xff) return;
     out->known = true;
     invented_fields(&out->field, ground, x, y, invented_slopes(elevation, x, y, 0xff));
+    out->tame = all_tame(&out->field);
 }
 
 static inline F32x8 between_nodes(F32x8 node, I32x8 cell, F32x8 along, F32x8 across)
@@ -356,8 +395,14 @@ void invented_between(SlowFields *out, const SlowNodes *nodes, const double x_m[
     const F32x8       u = at - whole, v = f32x8_clamp(f32x8_of_doubles(across), 0, 1);
     const I32x8       cell = i32x8_truncate(whole);
     const SlowFields *f = &nodes->field;
+    if (nodes->tame) {
+        out->patch = between_nodes(f->patch, cell, u, v);
+        out->bend_x = between_nodes(f->bend_x, cell, u, v), out->bend_y = between_nodes(f->bend_y, cell, u, v);
+        out->tame = true;
+        return;
+    }
     *out = (SlowFields){between_nodes(f->large, cell, u, v), between_nodes(f->middle, cell, u, v),
                         between_nodes(f->patch, cell, u, v), between_nodes(f->slope, cell, u, v),
                         between_nodes(f->wet, cell, u, v),   between_nodes(f->bend_x, cell, u, v),
-                        between_nodes(f->bend_y, cell, u, v)};
+                        between_nodes(f->bend_y, cell, u, v), false};
 }

@@ -270,6 +270,7 @@ typedef struct SlowFields {
     F32x8 large, middle, patch; /* noise of 310, 83 and 17 m */
     F32x8 slope, wet;
     F32x8 bend_x, bend_y; /* plot_bend_by */
+    bool  tame;           /* no place is wild: large, middle, slope and wet are not set */
 } SlowFields;
 
 /* Two by four nodes about places a few metres apart: between the nodes the slow fields are linear. */
@@ -278,6 +279,7 @@ typedef struct SlowNodes {
     bool       east;             /* the four nodes lie from west to east; otherwise from south to north */
     double     x0_m, y0_m;       /* place of the south-west node */
     double     per_x_m, per_y_m; /* nodes a metre */
+    bool       tame;             /* no place between them is wild: but for `patch` and bends, fields are not needed */
     SlowFields field;            /* lanes: nodes along the longer side, then across */
 } SlowNodes;
 
