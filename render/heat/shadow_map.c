@@ -267,7 +267,8 @@ Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool)
     m->shaded = malloc(cells);
     m->shadow = calloc(cells, (size_t)(m->stride > 0 ? m->stride : 1));
     Job    job = {m, of->plants, of->user, of->d_enu, of->clumped, elevation, {false}};
-    Status status = m->z_m && (m->stand || !of->plants) && m->open && m->shaded && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
+    Status status =
+        m->z_m && (m->stand || !of->plants) && m->open && m->shaded && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = cast(m, &job, of, pool);
     if (status == STATUS_OK) run(pool, m->ny, mark_row, &job);
     free_heights(m);
@@ -306,7 +307,7 @@ bool heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const Shado
         *open = 1;
         return false;
     }
-    const int      i = x < m->nx - 2 ? (int)x : m->nx - 2, j = y < m->ny - 2 ? (int)y : m->ny - 2;
+    const int    i = x < m->nx - 2 ? (int)x : m->nx - 2, j = y < m->ny - 2 ? (int)y : m->ny - 2;
     const size_t cell = (size_t)j * (size_t)m->nx + (size_t)i;
     if (!m->shaded[cell]) {
         memset(shadow, 0, (size_t)m->stride);

@@ -45,8 +45,9 @@ static const uint32_t east_step = 0x9e3779b1u, north_step = 0x85ebca77u;
 /* values_of_word of the corners SW, SE, NW, NE of one cell, each in all lanes. */
 static inline void corners_of_word(F32x8 first[4], F32x8 *second, I32x8 sw, int east, int north)
 {
-    const I32x8 word = i32x8_add(sw, _mm256_setr_epi32(0, east, north, (int)((unsigned)east + (unsigned)north), 0, 0, 0, 0));
-    F32x8       one, two;
+    const I32x8 word =
+        i32x8_add(sw, _mm256_setr_epi32(0, east, north, (int)((unsigned)east + (unsigned)north), 0, 0, 0, 0));
+    F32x8 one, two;
     values_of_word(&one, second ? &two : NULL, word);
     for (int k = 0; k < 4; k++) {
         first[k] = _mm256_permutevar8x32_ps(one, i32x8_set(k));

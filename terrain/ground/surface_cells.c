@@ -33,7 +33,7 @@ static unsigned judge(const Landscape *landscape, int64_t i, int64_t j)
     const Cover        *cover = landscape->cover;
     const UniformSquare square = {(double)i * cell_m, (double)j * cell_m, cell_m};
     const double        x_m = square.x_m + 0.5 * cell_m, y_m = square.y_m + 0.5 * cell_m;
-    uint8_t             class;
+    uint8_t class;
     if (!invented_uniform(&cover->invented, &landscape->elevation, &square)) return known_mixed;
     cover_surfaces(&class, landscape, 1, &x_m, &y_m);
     return known_one + class;
@@ -71,7 +71,8 @@ void surface_cells_at(uint8_t *surface, SurfaceCells *cells, const Landscape *la
         unsigned  known = 0;
         for (int k = first; k < first + some; k++) {
             if (fabs(x_m[k]) < farthest_m && fabs(y_m[k]) < farthest_m) {
-                const int64_t at_i = (int64_t)floor(x_m[k] * (1 / cell_m)), at_j = (int64_t)floor(y_m[k] * (1 / cell_m));
+                const int64_t at_i = (int64_t)floor(x_m[k] * (1 / cell_m)),
+                              at_j = (int64_t)floor(y_m[k] * (1 / cell_m));
                 if (!known || known < known_mixed || at_i != i || at_j != j)
                     i = at_i, j = at_j, known = look_up(cells, i, j);
                 if (known >= known_one) {

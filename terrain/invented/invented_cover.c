@@ -220,11 +220,11 @@ bool invented_wild_alike(const WildEnds *e)
                                             .wet = f32x8_load(field[4])});
     f32x8_store(grown, wild.grown), f32x8_store(stony, wild.stony), f32x8_store(marsh, wild.marsh);
     const double from[6][3] = {{(double)grown[low], (double)grown[high], 0},
-                              {(double)grown[low], (double)grown[high], dry_grass_from},
-                              {(double)marsh[low], (double)marsh[high], 0},
-                              {(double)stony[low_wet], (double)stony[high_dry], 0},
-                              {(double)stony[low_wet], (double)stony[high_dry], bare_soil_from},
-                              {(double)e->wet[0], (double)e->wet[1], worn_below}};
+                               {(double)grown[low], (double)grown[high], dry_grass_from},
+                               {(double)marsh[low], (double)marsh[high], 0},
+                               {(double)stony[low_wet], (double)stony[high_dry], 0},
+                               {(double)stony[low_wet], (double)stony[high_dry], bare_soil_from},
+                               {(double)e->wet[0], (double)e->wet[1], worn_below}};
     const int    rules = (double)stony[high_dry] + off < bare_soil_from ? 5 : 6; /* nothing there to wear off */
     for (int n = 0; n < rules; n++)
         if (from[n][0] - off <= from[n][2] && from[n][1] + off >= from[n][2]) return false;
@@ -234,8 +234,9 @@ bool invented_wild_alike(const WildEnds *e)
 /* Lanes on whose class the finest noise may bear, by which the borders of wild patches wander. */
 static unsigned close_to_wild(const Wild *wild)
 {
-    const F32x8 step = f32x8_set(wild_wander), dry_from = f32x8_set(dry_grass_from), soil_from = f32x8_set(bare_soil_from);
-    F32x8       close = f32x8_less(f32x8_abs(wild->grown), step);
+    const F32x8 step = f32x8_set(wild_wander), dry_from = f32x8_set(dry_grass_from),
+                soil_from = f32x8_set(bare_soil_from);
+    F32x8 close = f32x8_less(f32x8_abs(wild->grown), step);
     close = f32x8_or(close, f32x8_less(f32x8_abs(wild->grown - dry_from), step));
     close = f32x8_or(close, f32x8_less(f32x8_abs(wild->stony), step));
     close = f32x8_or(close, f32x8_less(f32x8_abs(wild->stony - soil_from), step));
@@ -315,12 +316,12 @@ static inline float greatest(F32x8 x)
 /* Whether nothing grows wild, and no rock shows, at any place whose fields are between these. */
 static bool all_tame(const SlowFields *slow)
 {
-    const F32x8 wet = f32x8_set((double)greatest(slow->wet)), dry = f32x8_set(-(double)greatest(-slow->wet));
-    SlowFields  most = {.large = f32x8_set((double)greatest(slow->large)),
-                        .middle = f32x8_set((double)greatest(slow->middle)),
-                        .patch = f32x8_set((double)greatest(slow->patch)),
-                        .slope = f32x8_set((double)greatest(slow->slope)),
-                        .wet = wet};
+    const F32x8  wet = f32x8_set((double)greatest(slow->wet)), dry = f32x8_set(-(double)greatest(-slow->wet));
+    SlowFields   most = {.large = f32x8_set((double)greatest(slow->large)),
+                         .middle = f32x8_set((double)greatest(slow->middle)),
+                         .patch = f32x8_set((double)greatest(slow->patch)),
+                         .slope = f32x8_set((double)greatest(slow->slope)),
+                         .wet = wet};
     const double off = wild_wander + 1e-4;
     const Wild   wild = wild_of(&most);
     most.wet = dry;
@@ -401,8 +402,8 @@ void invented_between(SlowFields *out, const SlowNodes *nodes, const double x_m[
         out->tame = true;
         return;
     }
-    *out = (SlowFields){between_nodes(f->large, cell, u, v), between_nodes(f->middle, cell, u, v),
-                        between_nodes(f->patch, cell, u, v), between_nodes(f->slope, cell, u, v),
-                        between_nodes(f->wet, cell, u, v),   between_nodes(f->bend_x, cell, u, v),
+    *out = (SlowFields){between_nodes(f->large, cell, u, v),  between_nodes(f->middle, cell, u, v),
+                        between_nodes(f->patch, cell, u, v),  between_nodes(f->slope, cell, u, v),
+                        between_nodes(f->wet, cell, u, v),    between_nodes(f->bend_x, cell, u, v),
                         between_nodes(f->bend_y, cell, u, v), false};
 }

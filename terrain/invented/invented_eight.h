@@ -285,7 +285,7 @@ typedef struct SlowNodes {
 
 /* Lanes of places where there is ground, that is, inside the outermost level, which encloses the others. NaN: no
  * ground. */
-unsigned invented_grounded(const Elevation *elevation, const double x_m[8], const double y_m[8]);
+unsigned            invented_grounded(const Elevation *elevation, const double x_m[8], const double y_m[8]);
 static const double invented_arm_m = 10;
 /* Slope of the terrain about the places, over twice this length, without the tilt of the plane far from its origin. */
 F32x8 invented_slopes(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes);

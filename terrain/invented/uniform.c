@@ -40,8 +40,7 @@ static void find_extremes(Extremes *out, const UniformSquare *s, double x0_m, do
     double    x_m[3], y_m[3];
     const int nx = cuts(x_m, s->x_m, s->side_m, x0_m, wave_m), ny = cuts(y_m, s->y_m, s->side_m, y0_m, wave_m);
     out->count = nx * ny > 8 ? 16 : 8;
-    for (int k = 0; k < out->count; k++)
-        out->x_m[k] = x_m[k % (nx * ny) % nx], out->y_m[k] = y_m[k % (nx * ny) / nx];
+    for (int k = 0; k < out->count; k++) out->x_m[k] = x_m[k % (nx * ny) % nx], out->y_m[k] = y_m[k % (nx * ny) / nx];
 }
 
 static Range range_of(const float *value, int count, double margin)
@@ -126,7 +125,8 @@ static Range slope_on(const ElevationLevel *l, const UniformSquare *s)
     const Range  dy = {2 * arm * rise[1] + north.low - south.high, 2 * arm * rise[1] + north.high - south.low};
     const Range  length = length_range(dx, dy);
     const double lean = hypot(middle_x, middle_y) / 6371e3;
-    return (Range){fmax(length.low / (2 * arm) - lean - rounding, 0), fmax(length.high / (2 * arm) - lean, 0) + rounding};
+    return (Range){fmax(length.low / (2 * arm) - lean - rounding, 0),
+                   fmax(length.high / (2 * arm) - lean, 0) + rounding};
 }
 
 /* Range of invented_slopes; false: not found, as on a seam of levels, or where posts are many. */

@@ -382,9 +382,9 @@ static bool item_clear(const Ways *ways, uint32_t item, double x, double y, doub
 bool ways_clear(const Ways *ways, const double place_m[2], double radius_m)
 {
     const double x = place_m[0] - ways->x0_m, y = place_m[1] - ways->y0_m, per_m = 1 / ways->index_m;
-    const int    west = (int)fmax(floor((x - radius_m) * per_m), 0), south = (int)fmax(floor((y - radius_m) * per_m), 0);
-    const int    east = (int)fmin(floor((x + radius_m) * per_m), ways->nx - 1);
-    const int    north = (int)fmin(floor((y + radius_m) * per_m), ways->ny - 1);
+    const int west = (int)fmax(floor((x - radius_m) * per_m), 0), south = (int)fmax(floor((y - radius_m) * per_m), 0);
+    const int east = (int)fmin(floor((x + radius_m) * per_m), ways->nx - 1);
+    const int north = (int)fmin(floor((y + radius_m) * per_m), ways->ny - 1);
     for (int j = south; j <= north; j++)
         for (int i = west; i <= east; i++)
             for (int n = ways->start[j * ways->nx + i]; n < ways->start[j * ways->nx + i + 1]; n++)
