@@ -300,6 +300,8 @@ static unsigned flags_of_pairs(bool *leafy, const Job *job, int x, int y, const 
     unsigned         flag = job->refine[px];
     const bool       leaves = flag & refine_leaves;
     *leafy = picture_shows_plant(job->picture, px);
+    const uint32_t *pair = of->pair;
+    if (pair[0] == pair_alike && pair[1] == pair_alike && pair[2] == pair_alike && pair[3] == pair_alike) return flag;
     for (int n = 0; n < 4 && !(flag & refine_all); n++) {
         const int xb = x + beside[n][0], yb = y + beside[n][1];
         if (of->pair[n] == pair_alike || (of->pair[n] == pair_of_plants && *leafy && !leaves)) continue;

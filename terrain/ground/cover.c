@@ -133,6 +133,17 @@ void cover_lay_over(uint8_t *surface, const Landscape *landscape, int count, con
     }
 }
 
+/* Lanes of places that are not NaN. */
+static unsigned numbers(const double x_m[8], const double y_m[8])
+{
+    unsigned lanes = 0;
+    for (int k = 0; k < 8; k += 4) {
+        const F64x4 x = f64x4_loadu(x_m + k), y = f64x4_loadu(y_m + k);
+        lanes |= f64x4_bits(f64x4_and(f64x4_equal(x, x), f64x4_equal(y, y))) << k;
+    }
+    return lanes;
+}
+
 /* Without what lies on it. nodes: those about the places; may be NULL. */
 static void find_surfaces(uint8_t *surface, const Landscape *landscape, const SlowNodes *nodes, int count,
                           const double *x_m, const double *y_m)
@@ -144,7 +155,8 @@ static void find_surfaces(uint8_t *surface, const Landscape *landscape, const Sl
         SlowFields slow;
         const int  some = count - first < 8 ? count - first : 8;
         for (int k = 0; k < 8; k++) x[k] = k < some ? x_m[first + k] : NAN, y[k] = k < some ? y_m[first + k] : NAN;
-        unsigned lanes = cover ? invented_grounded(&landscape->elevation, x, y) : 0;
+        /* nodes are on the ground, and so are places between them */
+        unsigned lanes = nodes && nodes->known ? numbers(x, y) : cover ? invented_grounded(&landscape->elevation, x, y) : 0;
         if (lanes && cover->invented.coast.sea_count)
             lanes = coast_surfaces(found, &cover->invented.coast, x, y, lanes);
         if (lanes && cover->real) {

@@ -175,7 +175,7 @@ void invented_fields(SlowFields *out, const InventedGround *ground, const double
     out->large = noise_eight(seed + 10, 310, x_m, y_m);
     out->slope = slope;
     plot_bend_by(&out->bend_x, &out->bend_y, seed, x_m, y_m);
-    out->tame = false;
+    out->tame = out->untouched = false;
 }
 
 static const double wild_wander = 0.02; /* moves the borders of wild patches by some metres */
@@ -268,7 +268,7 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
     plot_bent(bent_x, bent_y, seed, x_m, y_m, slow->bend_x, slow->bend_y);
     plots_find(&plots, seed, bent_x, bent_y, lanes);
     if (!slow->tame) wild = wild_of(slow);
-    if (ground->ways) {
+    if (ground->ways && !slow->untouched) {
         const I32x8 touches = ways_cells(ground->ways, x_m, y_m);
         touched = f32x8_bits(i32x8_greater(touches, i32x8_set(-1))) & lanes;
         if (touched) i32x8_store(cell_of, touches);
@@ -373,6 +373,9 @@ void invented_nodes(SlowNodes *out, const InventedGround *ground, const Elevatio
     out->known = true;
     invented_fields(&out->field, ground, x, y, invented_slopes(elevation, x, y, 0xff));
     out->tame = all_tame(&out->field);
+    /* corners of the places' area are nodes, and index cells are larger than that */
+    const I32x8 touches = ground->ways ? ways_cells(ground->ways, x, y) : i32x8_set(-1);
+    out->field.untouched = f32x8_bits(i32x8_greater(touches, i32x8_set(-1))) == 0;
 }
 
 static inline F32x8 between_nodes(F32x8 node, I32x8 cell, F32x8 along, F32x8 across)
@@ -399,11 +402,11 @@ void invented_between(SlowFields *out, const SlowNodes *nodes, const double x_m[
     if (nodes->tame) {
         out->patch = between_nodes(f->patch, cell, u, v);
         out->bend_x = between_nodes(f->bend_x, cell, u, v), out->bend_y = between_nodes(f->bend_y, cell, u, v);
-        out->tame = true;
+        out->tame = true, out->untouched = f->untouched;
         return;
     }
     *out = (SlowFields){between_nodes(f->large, cell, u, v),  between_nodes(f->middle, cell, u, v),
                         between_nodes(f->patch, cell, u, v),  between_nodes(f->slope, cell, u, v),
                         between_nodes(f->wet, cell, u, v),    between_nodes(f->bend_x, cell, u, v),
-                        between_nodes(f->bend_y, cell, u, v), false};
+                        between_nodes(f->bend_y, cell, u, v), false, f->untouched};
 }

@@ -271,6 +271,7 @@ typedef struct SlowFields {
     F32x8 slope, wet;
     F32x8 bend_x, bend_y; /* plot_bend_by */
     bool  tame;           /* no place is wild: large, middle, slope and wet are not set */
+    bool  untouched;      /* no way touches the index cell of any place */
 } SlowFields;
 
 /* Two by four nodes about places a few metres apart: between the nodes the slow fields are linear. */
