@@ -315,18 +315,19 @@ static unsigned flags_of_pairs(bool *leafy, const Job *job, int x, int y, const 
 /* Marks pixels on borders of ground classes, of those in `ask`: by the classes at their corners. */
 static void mark_borders(uint8_t flags[hits_capacity], const bool ask[hits_capacity], const Job *job, const Tile *tile)
 {
-    const int width = tile->x1 - tile->x0, columns = width + 1, pixels = width * (tile->y1 - tile->y0);
+    const int width = tile->x1 - tile->x0, height = tile->y1 - tile->y0, columns = width + 1;
     uint16_t  corner[corner_capacity];
     bool      wanted[corner_capacity] = {false};
-    for (int k = 0; k < pixels; k++) {
-        const int at = k / width * columns + k % width;
-        if (ask[k]) wanted[at] = wanted[at + 1] = wanted[at + columns] = wanted[at + columns + 1] = true;
-    }
+    for (int y = 0, k = 0; y < height; y++)
+        for (int x = 0; x < width; x++, k++) {
+            const int at = y * columns + x;
+            if (ask[k]) wanted[at] = wanted[at + 1] = wanted[at + columns] = wanted[at + columns + 1] = true;
+        }
     corner_materials(corner, job, tile, wanted);
-    for (int k = 0; k < pixels; k++) {
-        const size_t px = pixel_index(job, tile->x0 + k % width, tile->y0 + k / width);
-        if (ask[k] && corners_differ(corner + k / width * columns + k % width, columns, job->picture->material[px]))
-            flags[k] |= refine_ground;
+    for (int y = 0, k = 0; y < height; y++) {
+        const uint32_t *material = job->picture->material + pixel_index(job, tile->x0, tile->y0 + y);
+        for (int x = 0; x < width; x++, k++)
+            if (ask[k] && corners_differ(corner + y * columns + x, columns, material[x])) flags[k] |= refine_ground;
     }
 }
 

@@ -188,6 +188,27 @@ static bool looks_first(int side, int row, int column)
     return side < 8 ? (row + column) % 2 == 0 : row % 2 == 0 && (column + row / 2) % 2 == 0;
 }
 
+/* The places of a square in the order in which they are looked up. */
+typedef struct SquareOrder {
+    int     side, first; /* how many are looked up first */
+    uint8_t place[landscape_square_most];
+} SquareOrder;
+
+/* Valid until the thread's next call. */
+static const SquareOrder *order_of(int side)
+{
+    static _Thread_local SquareOrder order; /* most squares are of one side */
+    if (order.side == side) return &order;
+    int count = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int k = 0; k < side * side; k++)
+            if (looks_first(side, k / side, k % side) == (pass == 0)) order.place[count++] = (uint8_t)k;
+        if (pass == 0) order.first = count;
+    }
+    order.side = side;
+    return &order;
+}
+
 /* Whether something that lies on the ground reaches into a square of places: it may be narrower than the pattern is
  * wide. */
 static bool something_lies(const LandscapeOver *over, int count, const double *x_m, const double *y_m)
@@ -208,18 +229,17 @@ void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int
     const Cover *cover = landscape->cover;
     double       x[landscape_square_most], y[landscape_square_most];
     uint8_t      found[landscape_square_most];
-    int          place[landscape_square_most], differ = 0;
+    int          differ = 0;
     SlowNodes    nodes = {.known = false};
     assert(side * side <= landscape_square_most);
+    const SquareOrder *order = order_of(side);
     differ = something_lies(&landscape->over, side * side, x_m, y_m);
     if (landscape_is_synthetic(landscape))
         invented_nodes(&nodes, &cover->invented, &landscape->elevation, side * side, x_m, y_m);
     for (int pass = 0; pass == 0 || (pass == 1 && differ); pass++) {
-        int count = 0;
-        for (int row = 0, k = 0; row < side; row++)
-            for (int column = 0; column < side; column++, k++)
-                if (looks_first(side, row, column) == (pass == 0))
-                    place[count] = k, x[count] = x_m[k], y[count++] = y_m[k];
+        const uint8_t *place = order->place + (pass ? order->first : 0);
+        const int      count = pass ? side * side - order->first : order->first;
+        for (int k = 0; k < count; k++) x[k] = x_m[place[k]], y[k] = y_m[place[k]];
         find_surfaces(found, landscape, &nodes, count, x, y);
         cover_lay_over(found, landscape, count, x, y);
         for (int k = 0; k < count; k++) surface[place[k]] = found[k], differ |= found[k] != found[0];

@@ -152,23 +152,11 @@ static bool slope_range(Range *out, const Elevation *elevation, const UniformSqu
 
 /* ---- the square ------------------------------------------------------------------------------- */
 
-bool invented_uniform(const InventedGround *ground, const Elevation *elevation, const UniformSquare *square)
+/* Whether fields, and what runs between them, make one class of the square; what grows wild apart. */
+static bool fields_uniform(uint64_t seed, const UniformSquare *s, const double middle_m[2], double radius_m)
 {
-    const uint64_t      seed = ground->seed;
-    const UniformSquare s = {square->x_m - rounding_m, square->y_m - rounding_m, square->side_m + 2 * rounding_m};
-    const double        middle_m[2] = {s.x_m + 0.5 * s.side_m, s.y_m + 0.5 * s.side_m}, radius_m = sqrt(0.5) * s.side_m;
-    Range               slope, bend[2][2], by[2];
-    if (ground->coast.sea_count || !slope_range(&slope, elevation, &s)) return false;
-    if (ground->ways && !ways_clear(ground->ways, middle_m, radius_m)) return false;
-    const Range    large = noise_range(seed + 10, 310, &s), middle = noise_range(seed + 11, 83, &s);
-    const Range    patch = noise_range(seed + 12, 17, &s), wet = wet_range(ground->ways, &s);
-    const WildEnds ends = {{(float)large.low, (float)large.high},
-                           {(float)middle.low, (float)middle.high},
-                           {(float)patch.low, (float)patch.high},
-                           {(float)slope.low, (float)slope.high},
-                           {(float)wet.low, (float)wet.high}};
-    if (!invented_wild_alike(&ends)) return false;
-    for (int n = 0; n < 2; n++) pair_range(bend[n], seed + 26 + (uint64_t)n, plot_bend_wave_m[n], &s);
+    Range bend[2][2], by[2];
+    for (int n = 0; n < 2; n++) pair_range(bend[n], seed + 26 + (uint64_t)n, plot_bend_wave_m[n], s);
     for (int c = 0; c < 2; c++) {
         by[c] = sum_of((Range){-rounding_m, rounding_m}, plot_bend_away_m[0], bend[0][c]);
         by[c] = sum_of(by[c], plot_bend_away_m[1], bend[1][c]);
@@ -178,4 +166,23 @@ bool invented_uniform(const InventedGround *ground, const Elevation *elevation, 
     const double bent_m[2] = {c * middle_m[0] - t * middle_m[1] + 0.5 * (by[0].low + by[0].high),
                               t * middle_m[0] + c * middle_m[1] + 0.5 * (by[1].low + by[1].high)};
     return plots_alike(seed, bent_m, radius_m + 0.5 * hypot(by[0].high - by[0].low, by[1].high - by[1].low));
+}
+
+/* The cheapest reasons against it come first. */
+bool invented_uniform(const InventedGround *ground, const Elevation *elevation, const UniformSquare *square)
+{
+    const uint64_t      seed = ground->seed;
+    const UniformSquare s = {square->x_m - rounding_m, square->y_m - rounding_m, square->side_m + 2 * rounding_m};
+    const double        middle_m[2] = {s.x_m + 0.5 * s.side_m, s.y_m + 0.5 * s.side_m}, radius_m = sqrt(0.5) * s.side_m;
+    Range               slope;
+    if (ground->coast.sea_count || (ground->ways && !ways_clear(ground->ways, middle_m, radius_m))) return false;
+    if (!fields_uniform(seed, &s, middle_m, radius_m) || !slope_range(&slope, elevation, &s)) return false;
+    const Range    large = noise_range(seed + 10, 310, &s), middle = noise_range(seed + 11, 83, &s);
+    const Range    patch = noise_range(seed + 12, 17, &s), wet = wet_range(ground->ways, &s);
+    const WildEnds ends = {{(float)large.low, (float)large.high},
+                           {(float)middle.low, (float)middle.high},
+                           {(float)patch.low, (float)patch.high},
+                           {(float)slope.low, (float)slope.high},
+                           {(float)wet.low, (float)wet.high}};
+    return invented_wild_alike(&ends);
 }
