@@ -156,7 +156,9 @@ static void find_surfaces(uint8_t *surface, const Landscape *landscape, const Sl
         const int  some = count - first < 8 ? count - first : 8;
         for (int k = 0; k < 8; k++) x[k] = k < some ? x_m[first + k] : NAN, y[k] = k < some ? y_m[first + k] : NAN;
         /* nodes are on the ground, and so are places between them */
-        unsigned lanes = nodes && nodes->known ? numbers(x, y) : cover ? invented_grounded(&landscape->elevation, x, y) : 0;
+        unsigned lanes = nodes && nodes->known ? numbers(x, y)
+                         : cover               ? invented_grounded(&landscape->elevation, x, y)
+                                               : 0;
         if (lanes && cover->invented.coast.sea_count)
             lanes = coast_surfaces(found, &cover->invented.coast, x, y, lanes);
         if (lanes && cover->real) {

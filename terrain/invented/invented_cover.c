@@ -405,8 +405,13 @@ void invented_between(SlowFields *out, const SlowNodes *nodes, const double x_m[
         out->tame = true, out->untouched = f->untouched;
         return;
     }
-    *out = (SlowFields){between_nodes(f->large, cell, u, v),  between_nodes(f->middle, cell, u, v),
-                        between_nodes(f->patch, cell, u, v),  between_nodes(f->slope, cell, u, v),
-                        between_nodes(f->wet, cell, u, v),    between_nodes(f->bend_x, cell, u, v),
-                        between_nodes(f->bend_y, cell, u, v), false, f->untouched};
+    *out = (SlowFields){between_nodes(f->large, cell, u, v),
+                        between_nodes(f->middle, cell, u, v),
+                        between_nodes(f->patch, cell, u, v),
+                        between_nodes(f->slope, cell, u, v),
+                        between_nodes(f->wet, cell, u, v),
+                        between_nodes(f->bend_x, cell, u, v),
+                        between_nodes(f->bend_y, cell, u, v),
+                        false,
+                        f->untouched};
 }
