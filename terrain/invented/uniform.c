@@ -97,9 +97,16 @@ static Range above_plane(const ElevationLevel *l, const UniformSquare *s, double
     const int    j0 = (int)floor(y * per_m), j1 = (int)ceil((y + s->side_m) * per_m);
     Range        r = {INFINITY, -INFINITY};
     for (int j = j0; j <= j1; j++)
-        for (int i = i0; i <= i1; i++) {
-            const double z_m = l->step_m * elevation_post(l, i, j) - l->spacing_m * (rise[0] * i + rise[1] * j);
-            r.low = z_m < r.low ? z_m : r.low, r.high = z_m > r.high ? z_m : r.high;
+        for (int i = i0, end; i <= i1; i = end) { /* posts of a row in one tile */
+            const ElevationTile tile = l->tile[elevation_tile_index(l, i, j)];
+            const uint16_t     *stored = l->stored + elevation_stored_index(l, i, j);
+            end = i / elevation_tile_cells * elevation_tile_cells + elevation_tile_cells;
+            end = end < i1 + 1 ? end : i1 + 1;
+            for (int k = i; k < end; k++) {
+                const double post = elevation_of_tile(tile, stored[k - i]);
+                const double z_m = l->step_m * post - l->spacing_m * (rise[0] * k + rise[1] * j);
+                r.low = z_m < r.low ? z_m : r.low, r.high = z_m > r.high ? z_m : r.high;
+            }
         }
     return r;
 }
