@@ -133,6 +133,16 @@ static inline F64x4    f64x4_or(F64x4 a, F64x4 b) { return _mm256_or_pd(a, b); }
 static inline F64x4    f64x4_and_not(F64x4 a, F64x4 not_b) { return _mm256_andnot_pd(not_b, a); }
 static inline F64x4    f64x4_select(F64x4 mask, F64x4 yes, F64x4 no) { return _mm256_blendv_pd(no, yes, mask); }
 static inline unsigned f64x4_bits(F64x4 mask) { return (unsigned)_mm256_movemask_pd(mask); }
-static inline F64x4    f64x4_of_ints(__m128i i) { return _mm256_cvtepi32_pd(i); }
+static inline F64x4    f64x4_mask(unsigned bits)
+{
+    const __m256i bit = _mm256_setr_epi64x(1, 2, 4, 8);
+    return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x((int)bits), bit), bit));
+}
+static inline F64x4 f64x4_of_ints(__m128i i) { return _mm256_cvtepi32_pd(i); }
+/* Lanes 0 .. 3 of floats, or 4 .. 7. */
+static inline F64x4 f64x4_half(F32x8 x, int half)
+{
+    return _mm256_cvtps_pd(half ? _mm256_extractf128_ps(x, 1) : _mm256_castps256_ps128(x));
+}
 
 #endif

@@ -300,6 +300,8 @@ static unsigned flags_of_pairs(bool *leafy, const Job *job, int x, int y, const 
     unsigned         flag = job->refine[px];
     const bool       leaves = flag & refine_leaves;
     *leafy = picture_shows_plant(job->picture, px);
+    const uint32_t *pair = of->pair;
+    if (pair[0] == pair_alike && pair[1] == pair_alike && pair[2] == pair_alike && pair[3] == pair_alike) return flag;
     for (int n = 0; n < 4 && !(flag & refine_all); n++) {
         const int xb = x + beside[n][0], yb = y + beside[n][1];
         if (of->pair[n] == pair_alike || (of->pair[n] == pair_of_plants && *leafy && !leaves)) continue;
@@ -313,18 +315,19 @@ static unsigned flags_of_pairs(bool *leafy, const Job *job, int x, int y, const 
 /* Marks pixels on borders of ground classes, of those in `ask`: by the classes at their corners. */
 static void mark_borders(uint8_t flags[hits_capacity], const bool ask[hits_capacity], const Job *job, const Tile *tile)
 {
-    const int width = tile->x1 - tile->x0, columns = width + 1, pixels = width * (tile->y1 - tile->y0);
+    const int width = tile->x1 - tile->x0, height = tile->y1 - tile->y0, columns = width + 1;
     uint16_t  corner[corner_capacity];
     bool      wanted[corner_capacity] = {false};
-    for (int k = 0; k < pixels; k++) {
-        const int at = k / width * columns + k % width;
-        if (ask[k]) wanted[at] = wanted[at + 1] = wanted[at + columns] = wanted[at + columns + 1] = true;
-    }
+    for (int y = 0, k = 0; y < height; y++)
+        for (int x = 0; x < width; x++, k++) {
+            const int at = y * columns + x;
+            if (ask[k]) wanted[at] = wanted[at + 1] = wanted[at + columns] = wanted[at + columns + 1] = true;
+        }
     corner_materials(corner, job, tile, wanted);
-    for (int k = 0; k < pixels; k++) {
-        const size_t px = pixel_index(job, tile->x0 + k % width, tile->y0 + k / width);
-        if (ask[k] && corners_differ(corner + k / width * columns + k % width, columns, job->picture->material[px]))
-            flags[k] |= refine_ground;
+    for (int y = 0, k = 0; y < height; y++) {
+        const uint32_t *material = job->picture->material + pixel_index(job, tile->x0, tile->y0 + y);
+        for (int x = 0; x < width; x++, k++)
+            if (ask[k] && corners_differ(corner + y * columns + x, columns, material[x])) flags[k] |= refine_ground;
     }
 }
 
@@ -395,7 +398,8 @@ void recall_ground(Worker *w, const Job *job)
         hits->p_enu[2][i] -= visibility_lift_at(job->scene.visibility, p_enu);
         w->samples.sun[i] = job->sun[px];
     }
-    landscape_surfaces(hits->surface, job->scene.world->landscape, hits->count, hits->p_enu[0], hits->p_enu[1]);
+    surface_cells_at(hits->surface, job->scene.world->cells, job->scene.world->landscape, hits->count, hits->p_enu[0],
+                     hits->p_enu[1]);
     for (int i = 0; i < hits->count; i++)
         if (visibility_is_beyond(job->scene.visibility, hits->p_enu[0][i], hits->p_enu[1][i]))
             hits->surface[i] = p->cover[pixel_index(job, block->x[i], block->y[i])];

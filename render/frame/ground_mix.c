@@ -21,20 +21,19 @@ static double plane_through(const double n[3], const double d_hit[3], double ran
 
 enum { corners_together = 128 };
 
-/* Where corners are on the ground; NaN: no ground there. corner: [count], numbered row by row from the tile's first. */
-static void place_corners(double *x_m, double *y_m, const Job *job, const Tile *tile, const uint16_t *corner, int count)
+/* Where corners are on the ground; NaN: no ground there. corner: [count], columns and rows of the picture. */
+static void place_corners(double *x_m, double *y_m, const Job *job, const uint16_t (*corner)[2], int count)
 {
     enum { most = corners_together };
     const View    *view = &job->request->view;
     const Picture *p = job->picture;
-    const int      columns = tile->x1 - tile->x0 + 1;
     double         column_px[2][most], row_px[2][most], hit[3][most], way[3][most], n[3][most], hit_m[most];
     bool           ground[most];
     for (int k = 0; k < count; k++) {
         /* the pixel below and to the right of the corner gives the plane of the ground; at the picture's end the last
          */
-        const int    x = tile->x0 + corner[k] % columns, px = x < view->width ? x : view->width - 1;
-        const int    y = tile->y0 + corner[k] / columns, py = y < view->height ? y : view->height - 1;
+        const int    x = corner[k][0], px = x < view->width ? x : view->width - 1;
+        const int    y = corner[k][1], py = y < view->height ? y : view->height - 1;
         const size_t at = pixel_index(job, px, py);
         column_px[0][k] = px + 0.5, row_px[0][k] = py + 0.5;
         column_px[1][k] = x, row_px[1][k] = y;
@@ -58,16 +57,20 @@ void corner_materials(uint16_t out[corner_capacity], const Job *job, const Tile 
                       const bool wanted[corner_capacity])
 {
     const Materials *materials = &job->scene.world->materials;
-    const int        corners = (tile->x1 - tile->x0 + 1) * (tile->y1 - tile->y0 + 1);
+    const int        columns = tile->x1 - tile->x0 + 1, corners = columns * (tile->y1 - tile->y0 + 1);
     double           x_m[corners_together], y_m[corners_together];
     uint8_t          surface[corners_together];
-    uint16_t         corner[corners_together];
+    uint16_t         corner[corners_together], place[corners_together][2];
+    int              x = tile->x0, y = tile->y0;
     for (int at = 0; at < corners;) {
         int count = 0;
-        for (; at < corners && count < corners_together; at++)
-            if (wanted[at]) corner[count++] = (uint16_t)at;
-        place_corners(x_m, y_m, job, tile, corner, count);
-        landscape_surfaces(surface, job->scene.world->landscape, count, x_m, y_m);
+        for (; at < corners && count < corners_together; at++) {
+            corner[count] = (uint16_t)at, place[count][0] = (uint16_t)x, place[count][1] = (uint16_t)y;
+            count += wanted[at];
+            if (++x > tile->x1) x = tile->x0, y++;
+        }
+        place_corners(x_m, y_m, job, place, count);
+        surface_cells_at(surface, job->scene.world->cells, job->scene.world->landscape, count, x_m, y_m);
         for (int k = 0; k < count; k++)
             out[corner[k]] = surface[k] == SURFACE_NONE ? material_unknown : (uint16_t)materials->surface[surface[k]];
     }

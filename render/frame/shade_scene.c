@@ -83,6 +83,7 @@ Status shade_scene_create(ShadeScene *scene, const RenderRequest *request, unsig
     scene->all_volumes = volume;
     VisibilityConfig eye = {.tracer = world->tracer,
                             .ground = world->landscape,
+                            .cells = world->cells,
                             .frame = &world->frame,
                             .snapshot = snapshot,
                             .skips_off = request->skips_off,

@@ -37,6 +37,7 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
         world_close(&world);
         return status;
     }
+    if (landscape) world.cells = surface_cells_create(landscape);
     *out = world;
     return STATUS_OK;
 }
@@ -143,6 +144,7 @@ void world_close(World *world)
     if (world->patches) heat_patches_destroy(world->patches);
     free(world->patches);
     sky_kept_destroy(world->sky);
+    surface_cells_destroy(world->cells);
     tracer_destroy(world->tracer);
     memset(world, 0, sizeof *world);
 }

@@ -17,6 +17,7 @@
 #include "render/trace/visibility/visibility.h"
 #include "terrain/detail/detail.h"
 #include "terrain/earth/refraction.h"
+#include "terrain/ground/surface_cells.h"
 #include "terrain/weather/weather.h"
 
 typedef struct World {
@@ -44,6 +45,7 @@ typedef struct World {
     PartTable         parts;        /* what is behind the skin of parts */
     PatchSet         *patches;      /* of the models that have been seen with temperatures */
     Cache            *cache;        /* world_keep; NULL: nowhere */
+    SurfaceCells     *cells;        /* what frames know of the landscape's classes */
     struct SkyKept   *sky;          /* what frames leave for the next (render/light/sky_visibility.h) */
 } World;
 

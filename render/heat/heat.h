@@ -211,8 +211,8 @@ typedef struct ShadowOf {
 Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool);
 void   heat_shadow_destroy(ShadowMap *map); /* accepts NULL */
 /* Shares in the shade at a place, of 255, shadow[slots, padded to a multiple of 8 with 0]; and the share of its sky
- * that is open past plants. Beyond the grid: open. */
-void   heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const ShadowMap *map, double x_m, double y_m);
+ * that is open past plants. Beyond the grid: open. Returns false where it is lit and open all day. */
+bool   heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const ShadowMap *map, double x_m, double y_m);
 size_t heat_shadow_bytes(const ShadowMap *map);
 double heat_shadow_cell_m(const ShadowMap *map);
 

@@ -169,14 +169,16 @@ void heat_scene_grounds_k(double temp_k[heat_lanes], double lifted_k[heat_lanes]
     const HeatNow *now = scene->now;
     HeatPlaces     place;
     uint8_t        shadow[heat_lanes][shadow_most_slots];
+    bool           shaded = false;
     memcpy(place.n_enu, at->n_enu, sizeof place.n_enu);
     memcpy(place.dark, at->dark, sizeof place.dark);
     for (int k = 0; k < heat_lanes; k++) {
         place.kind[k] = now->kind_of[at->surface[k]];
         place.open[k] = 1, place.taken[k] = 0;
-        if (scene->shadow) heat_shadow_at(shadow[k], &place.open[k], scene->shadow, at->p_enu[0][k], at->p_enu[1][k]);
+        if (scene->shadow)
+            shaded |= heat_shadow_at(shadow[k], &place.open[k], scene->shadow, at->p_enu[0][k], at->p_enu[1][k]);
     }
-    if (scene->shadow) find_taken(&place, now, shadow);
+    if (shaded) find_taken(&place, now, shadow);
     heat_grounds_k(temp_k, now, &place);
     for (int k = 0; k < heat_lanes; k++) {
         const double unlit_k = (double)now->table.dark_k[place.kind[k]][heat_ups - 1];

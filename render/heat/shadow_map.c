@@ -13,6 +13,7 @@ struct ShadowMap {
     float   *line_m[2];  /* z_m column by column; tops of plants over the ground, row by row, then column by column */
     uint8_t *shadow;     /* [ny][nx][stride] */
     uint8_t *open;       /* [ny][nx] of 255 */
+    uint8_t *shaded;     /* [ny][nx] 1: not lit and open all day at this cell and those to its north and east */
 };
 
 /* Unit direction from cell to cell, along the axis on which the sun stands nearer. */
@@ -215,6 +216,27 @@ static Status cast(ShadowMap *m, Job *job, const ShadowOf *of, Pool *pool)
     return STATUS_OK;
 }
 
+static bool is_shaded(const ShadowMap *m, size_t cell)
+{
+    uint8_t any = 0;
+    for (size_t s = cell * (size_t)m->stride; s < (cell + 1) * (size_t)m->stride; s++) any |= m->shadow[s];
+    return any != 0 || m->open[cell] != 255;
+}
+
+static void mark_row(void *user, int worker, int j)
+{
+    const ShadowMap *m = ((const Job *)user)->map;
+    const size_t     row = (size_t)j * (size_t)m->nx, rows = j + 1 < m->ny ? 2 : 1;
+    (void)worker;
+    memset(m->shaded + row, 0, (size_t)m->nx);
+    for (size_t k = 0; k < rows; k++)
+        for (size_t i = 0; i < (size_t)m->nx; i++) {
+            if (!is_shaded(m, row + k * (size_t)m->nx + i)) continue;
+            m->shaded[row + i] = 1;
+            if (i > 0) m->shaded[row + i - 1] = 1;
+        }
+}
+
 static void free_heights(ShadowMap *m)
 {
     free(m->z_m);
@@ -242,10 +264,13 @@ Status heat_shadow_create(ShadowMap **out, const ShadowOf *of, Pool *pool)
     m->z_m = malloc(cells * sizeof *m->z_m);
     m->stand = of->plants ? malloc(cells * sizeof *m->stand) : NULL;
     m->open = malloc(cells);
+    m->shaded = malloc(cells);
     m->shadow = calloc(cells, (size_t)(m->stride > 0 ? m->stride : 1));
     Job    job = {m, of->plants, of->user, of->d_enu, of->clumped, elevation, {false}};
-    Status status = m->z_m && (m->stand || !of->plants) && m->open && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
+    Status status =
+        m->z_m && (m->stand || !of->plants) && m->open && m->shaded && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = cast(m, &job, of, pool);
+    if (status == STATUS_OK) run(pool, m->ny, mark_row, &job);
     free_heights(m);
     if (status == STATUS_OK) *out = m;
     else heat_shadow_destroy(m);
@@ -257,6 +282,7 @@ void heat_shadow_destroy(ShadowMap *m)
     if (!m) return;
     free_heights(m);
     free(m->open);
+    free(m->shaded);
     free(m->shadow);
     free(m);
 }
@@ -273,18 +299,24 @@ static inline __m128i eight_shares(const uint8_t *of, unsigned weight)
     return _mm_mullo_epi16(_mm_cvtepu8_epi16(_mm_loadl_epi64((const __m128i *)of)), _mm_set1_epi16((short)weight));
 }
 
-void heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const ShadowMap *m, double x_m, double y_m)
+bool heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const ShadowMap *m, double x_m, double y_m)
 {
     const double x = (x_m - m->x0_m) / m->cell_m, y = (y_m - m->y0_m) / m->cell_m;
     if (!(x >= 0 && y >= 0 && x <= m->nx - 1 && y <= m->ny - 1)) {
         memset(shadow, 0, shadow_most_slots);
         *open = 1;
-        return;
+        return false;
     }
-    const int      i = x < m->nx - 2 ? (int)x : m->nx - 2, j = y < m->ny - 2 ? (int)y : m->ny - 2;
+    const int    i = x < m->nx - 2 ? (int)x : m->nx - 2, j = y < m->ny - 2 ? (int)y : m->ny - 2;
+    const size_t cell = (size_t)j * (size_t)m->nx + (size_t)i;
+    if (!m->shaded[cell]) {
+        memset(shadow, 0, (size_t)m->stride);
+        *open = 1;
+        return false;
+    }
     const unsigned u = nearest(16 * (x - i)), v = nearest(16 * (y - j));
     const unsigned w00 = (16 - u) * (16 - v), w01 = u * (16 - v), w10 = (16 - u) * v, w11 = u * v; /* 256 in all */
-    const size_t cell = (size_t)j * (size_t)m->nx + (size_t)i, above = cell + (size_t)m->nx, stride = (size_t)m->stride;
+    const size_t   above = cell + (size_t)m->nx, stride = (size_t)m->stride;
     const uint8_t *a = m->shadow + cell * stride, *b = a + stride, *c = m->shadow + above * stride, *d = c + stride;
     for (size_t s = 0; s < stride; s += 8) { /* sums of 255 times 256 and 128 fit in 16 bits */
         const __m128i sum = _mm_add_epi16(_mm_add_epi16(eight_shares(a + s, w00), eight_shares(b + s, w01)),
@@ -294,7 +326,8 @@ void heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const Shado
     }
     *open = (m->open[cell] * w00 + m->open[cell + 1] * w01 + m->open[above] * w10 + m->open[above + 1] * w11) /
             (255.0 * 256);
+    return true;
 }
 
-size_t heat_shadow_bytes(const ShadowMap *m) { return (size_t)m->nx * (size_t)m->ny * (size_t)(m->stride + 1); }
+size_t heat_shadow_bytes(const ShadowMap *m) { return (size_t)m->nx * (size_t)m->ny * (size_t)(m->stride + 2); }
 double heat_shadow_cell_m(const ShadowMap *m) { return m->cell_m; }

@@ -64,7 +64,6 @@ Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials 
         out->level_w_m2_sr[b] = b >= AIR_MWIR ? (float)air->light.ground_w_m2_sr[b]
                                               : (float)(optical_ground_w_m2(b, air, materials) / pi_rad);
         out->sun_w_m2[b] = b == AIR_LWIR ? 0 : (float)air->light.sun_w_m2[b];
-        if (out->sun_w_m2[b] > 0) out->any_sun = true;
     }
     return STATUS_OK;
 }
@@ -297,6 +296,8 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     material_rows(of, light->gloss, material, same);
     const bool glossy = f32x8_bits(f32x8_greater(of[gloss_share], zero())) != 0;
     const bool panes = f32x8_bits(f32x8_greater(of[gloss_pane], zero())) != 0;
+    bool       sunlit_band = false; /* some band that is asked for shows the sun */
+    for (int band = 0; band < AIR_BAND_COUNT; band++) sunlit_band |= out[band] && light->sun_w_m2[band] > 0;
 
     const Three sun = {f32x8_set(air->light.sun_d_enu[0]), f32x8_set(air->light.sun_d_enu[1]),
                        f32x8_set(air->light.sun_d_enu[2])};
@@ -319,7 +320,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
         sees_sky = f32x8_clamp(f32x8_fma(f32x8_set(0.5) * mirror.z, of[gloss_per_roughness], f32x8_set(0.5)), 0, 1);
         sky_towards(sky, light, mirror, sun, of[gloss_roughness] + of[gloss_roughness]);
         water_eye = dielectric(f32x8_set(water_index2), f32x8_min(n_eye, one()));
-        if (light->any_sun && f32x8_bits(f32x8_greater(n_sun, zero()))) {
+        if (sunlit_band && f32x8_bits(f32x8_greater(n_sun, zero()))) {
             glint = lobe(of[gloss_slope2], n, eye, sun, n_eye, n_sun);
             half = f32x8_sqrt(f32x8_max(f32x8_set(0.5) * (one() + dot(eye, sun)), zero()));
             water_half = dielectric(f32x8_set(water_index2), f32x8_min(half, one()));

@@ -21,7 +21,6 @@ typedef struct SurfaceLight {
     float      level_w_m2_sr[surface_light_bands], sun_w_m2[surface_light_bands]; /* level ground's radiance; the sun */
     float (*rho)[surface_light_bands], (*gloss)[surface_light_bands];             /* [materials]; GlossValue */
     float (*tau)[surface_light_bands]; /* [materials]; NULL: nothing lets light through */
-    bool any_sun;
 } SurfaceLight;
 
 /* STATUS_NO_MEMORY: of the arena, which owns the tables by material. */

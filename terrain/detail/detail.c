@@ -39,6 +39,22 @@ static inline void values_of_word(F32x8 *first, F32x8 *second, I32x8 h)
     if (second) *second = f32x8_of_ints(i32x8_sub(high, low)) * unit;
 }
 
+/* odd multipliers whose lattice of equal words has no vector shorter than 35 000 cells */
+static const uint32_t east_step = 0x9e3779b1u, north_step = 0x85ebca77u;
+
+/* values_of_word of the corners SW, SE, NW, NE of one cell, each in all lanes. */
+static inline void corners_of_word(F32x8 first[4], F32x8 *second, I32x8 sw, int east, int north)
+{
+    const I32x8 word =
+        i32x8_add(sw, _mm256_setr_epi32(0, east, north, (int)((unsigned)east + (unsigned)north), 0, 0, 0, 0));
+    F32x8 one, two;
+    values_of_word(&one, second ? &two : NULL, word);
+    for (int k = 0; k < 4; k++) {
+        first[k] = _mm256_permutevar8x32_ps(one, i32x8_set(k));
+        if (second) second[k] = _mm256_permutevar8x32_ps(two, i32x8_set(k));
+    }
+}
+
 typedef struct Octave {
     F32x8 first, second;    /* two noise values, each of deviation 1 */
     F32x8 slope_x, slope_y; /* slope of the first, per metre */
@@ -55,8 +71,7 @@ static const struct {
 /* two: whether the second value is computed; slopes: whether the slopes are. */
 static inline Octave octave_eight(uint64_t seed, int n, const double x_m[8], const double y_m[8], bool two, bool slopes)
 {
-    /* odd multipliers whose lattice of equal words has no vector shorter than 35 000 cells */
-    const I32x8  east = i32x8_set((int)0x9e3779b1u), north = i32x8_set((int)0x85ebca77u);
+    const I32x8  east = i32x8_set((int)east_step), north = i32x8_set((int)north_step);
     const double c = turn[n].cosine, s = turn[n].sine;
     double       u_m[8], v_m[8];
     for (int k = 0; k < 8; k += 4) {
@@ -71,7 +86,11 @@ static inline Octave octave_eight(uint64_t seed, int n, const double x_m[8], con
     const I32x8       nw = i32x8_add(sw, north);
     F32x8             first[4], second[4];
     const I32x8       word[4] = {sw, i32x8_add(sw, east), nw, i32x8_add(nw, east)};
-    for (int k = 0; k < 4; k++) values_of_word(&first[k], two ? &second[k] : NULL, word[k]);
+    if (f32x8_bits(i32x8_equal(sw, _mm256_permutevar8x32_epi32(sw, i32x8_set(0)))) == 0xff) {
+        corners_of_word(first, two ? second : NULL, sw, (int)east_step, (int)north_step); /* all are in one cell */
+    } else {
+        for (int k = 0; k < 4; k++) values_of_word(&first[k], two ? &second[k] : NULL, word[k]);
+    }
 
     Octave      out = {.second = f32x8_set(0), .slope_x = f32x8_set(0), .slope_y = f32x8_set(0)};
     const F32x8 south = f32x8_fma(a.first, first[0], a.second * first[1]);

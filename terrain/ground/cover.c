@@ -124,15 +124,27 @@ static unsigned coast_surfaces(int32_t surface[8], const Coast *coast, const dou
 }
 
 /* What lies on the ground, such as roads, wherever there is ground. */
-static void lay_over(uint8_t *surface, const LandscapeOver *over, int count, const double *x_m, const double *y_m)
+void cover_lay_over(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
 {
-    for (int k = 0; k < count; k++) {
+    const LandscapeOver *over = &landscape->over;
+    for (int k = 0; k < count && over->of; k++) {
         const int laid = surface[k] == SURFACE_NONE ? SURFACE_NONE : over->surface_at(over->of, x_m[k], y_m[k]);
         if (laid != SURFACE_NONE) surface[k] = (uint8_t)laid;
     }
 }
 
-/* nodes: those about the places; may be NULL. */
+/* Lanes of places that are not NaN. */
+static unsigned numbers(const double x_m[8], const double y_m[8])
+{
+    unsigned lanes = 0;
+    for (int k = 0; k < 8; k += 4) {
+        const F64x4 x = f64x4_loadu(x_m + k), y = f64x4_loadu(y_m + k);
+        lanes |= f64x4_bits(f64x4_and(f64x4_equal(x, x), f64x4_equal(y, y))) << k;
+    }
+    return lanes;
+}
+
+/* Without what lies on it. nodes: those about the places; may be NULL. */
 static void find_surfaces(uint8_t *surface, const Landscape *landscape, const SlowNodes *nodes, int count,
                           const double *x_m, const double *y_m)
 {
@@ -143,7 +155,10 @@ static void find_surfaces(uint8_t *surface, const Landscape *landscape, const Sl
         SlowFields slow;
         const int  some = count - first < 8 ? count - first : 8;
         for (int k = 0; k < 8; k++) x[k] = k < some ? x_m[first + k] : NAN, y[k] = k < some ? y_m[first + k] : NAN;
-        unsigned lanes = cover ? invented_grounded(&landscape->elevation, x, y) : 0;
+        /* nodes are on the ground, and so are places between them */
+        unsigned lanes = nodes && nodes->known ? numbers(x, y)
+                         : cover               ? invented_grounded(&landscape->elevation, x, y)
+                                               : 0;
         if (lanes && cover->invented.coast.sea_count)
             lanes = coast_surfaces(found, &cover->invented.coast, x, y, lanes);
         if (lanes && cover->real) {
@@ -155,12 +170,17 @@ static void find_surfaces(uint8_t *surface, const Landscape *landscape, const Sl
         }
         for (int k = 0; k < some; k++) surface[first + k] = (uint8_t)found[k];
     }
-    if (landscape->over.of) lay_over(surface, &landscape->over, count, x_m, y_m);
+}
+
+void cover_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
+{
+    find_surfaces(surface, landscape, NULL, count, x_m, y_m);
 }
 
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
 {
-    find_surfaces(surface, landscape, NULL, count, x_m, y_m);
+    cover_surfaces(surface, landscape, count, x_m, y_m);
+    cover_lay_over(surface, landscape, count, x_m, y_m);
 }
 
 /* Whether a place of a square is looked up first: a quarter of the places in a regular pattern; half of them in a small
@@ -168,6 +188,27 @@ void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count,
 static bool looks_first(int side, int row, int column)
 {
     return side < 8 ? (row + column) % 2 == 0 : row % 2 == 0 && (column + row / 2) % 2 == 0;
+}
+
+/* The places of a square in the order in which they are looked up. */
+typedef struct SquareOrder {
+    int     side, first; /* how many are looked up first */
+    uint8_t place[landscape_square_most];
+} SquareOrder;
+
+/* Valid until the thread's next call. */
+static const SquareOrder *order_of(int side)
+{
+    static _Thread_local SquareOrder order; /* most squares are of one side */
+    if (order.side == side) return &order;
+    int count = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int k = 0; k < side * side; k++)
+            if (looks_first(side, k / side, k % side) == (pass == 0)) order.place[count++] = (uint8_t)k;
+        if (pass == 0) order.first = count;
+    }
+    order.side = side;
+    return &order;
 }
 
 /* Whether something that lies on the ground reaches into a square of places: it may be narrower than the pattern is
@@ -190,19 +231,19 @@ void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int
     const Cover *cover = landscape->cover;
     double       x[landscape_square_most], y[landscape_square_most];
     uint8_t      found[landscape_square_most];
-    int          place[landscape_square_most], differ = 0;
+    int          differ = 0;
     SlowNodes    nodes = {.known = false};
     assert(side * side <= landscape_square_most);
+    const SquareOrder *order = order_of(side);
     differ = something_lies(&landscape->over, side * side, x_m, y_m);
     if (landscape_is_synthetic(landscape))
         invented_nodes(&nodes, &cover->invented, &landscape->elevation, side * side, x_m, y_m);
     for (int pass = 0; pass == 0 || (pass == 1 && differ); pass++) {
-        int count = 0;
-        for (int row = 0, k = 0; row < side; row++)
-            for (int column = 0; column < side; column++, k++)
-                if (looks_first(side, row, column) == (pass == 0))
-                    place[count] = k, x[count] = x_m[k], y[count++] = y_m[k];
+        const uint8_t *place = order->place + (pass ? order->first : 0);
+        const int      count = pass ? side * side - order->first : order->first;
+        for (int k = 0; k < count; k++) x[k] = x_m[place[k]], y[k] = y_m[place[k]];
         find_surfaces(found, landscape, &nodes, count, x, y);
+        cover_lay_over(found, landscape, count, x, y);
         for (int k = 0; k < count; k++) surface[place[k]] = found[k], differ |= found[k] != found[0];
     }
     for (int k = 0; k < side * side && !differ; k++) surface[k] = found[0];

@@ -20,4 +20,8 @@ typedef struct Cover {
 void cover_measure_photo(Landscape *landscape);
 void cover_free(Cover *cover); /* accepts NULL */
 
+/* landscape_surfaces in two steps: what covers the ground, and over it what lies on it. */
+void cover_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m);
+void cover_lay_over(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m);
+
 #endif

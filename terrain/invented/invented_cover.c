@@ -20,7 +20,7 @@ unsigned invented_grounded(const Elevation *elevation, const double x_m[8], cons
 
 /* ---- slope ---------------------------------------------------------------------------------- */
 
-static const double arm_m = 10;
+static const double arm_m = invented_arm_m;
 
 /* Slope over some 20 m, so that the cover does not follow the edges of single triangles; 0 at the very rim. */
 static double slope_about(const Elevation *elevation, double x_m, double y_m)
@@ -166,51 +166,6 @@ static F32x8 wander_eight(uint64_t seed, const double x_m[8], const double y_m[8
 
 /* ---- synthetic cover ------------------------------------------------------------------------ */
 
-static const double track_half_m = 2, hedge_half_m = 1.5, hedge_beyond_m = 3.6, border_wander_m = 0.6;
-
-/* Class on the border of two fields at a position near it; SURFACE_NONE: that of the field. crop: gets the field of the
- * position after the border has wandered. */
-static SurfaceClass border_surface(int32_t *crop, PlotCell *cell, uint64_t seed, int site, int other, float x_m,
-                                   float y_m, float wander)
-{
-    const PlotBorder border = plot_border(cell, seed, site, other, x_m, y_m);
-    *crop = cell->crop[site];
-    const double off_m = border_wander_m * (double)wander;
-    double       here_m = border.away_m + (border.first ? off_m : -off_m);
-    if (here_m < 0) *crop = cell->crop[other], here_m = -here_m;
-    const double edge_m = 0.5 * off_m; /* edges of tracks and hedges wander less than borders */
-    if (border.track && here_m + edge_m < track_half_m) return SURFACE_TRACK;
-    if (border.hedge && border.track && here_m > track_half_m && here_m + edge_m < hedge_beyond_m) return SURFACE_SCRUB;
-    if (border.hedge && !border.track && here_m + edge_m < hedge_half_m) return SURFACE_SCRUB;
-    if (border.track && here_m + edge_m < track_half_m + 0.7) return SURFACE_GRASS;
-    return SURFACE_NONE;
-}
-
-/* Lanes within reach of a border between their field and another. other: site beyond the nearest border. Distances to
- * perpendicular bisectors are compared by their squares, without divisions. */
-static unsigned near_border(I32x8 *other, const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, F32x8 least)
-{
-    const F32x8  own_x = f32x8_gather(cell->x_m, site), own_y = f32x8_gather(cell->y_m, site);
-    const I32x8  own = plot_look(cell->field, site);
-    const double reach_m = 2 * (hedge_beyond_m + border_wander_m);
-    F32x8 best = f32x8_set(reach_m * reach_m * 1.01), best_apart = f32x8_set(1); /* 1.01: a margin for rounding */
-    F32x8 near = f32x8_set(0);
-    I32x8 found = i32x8_set(0);
-    for (int n = 0; n < plot_sites; n++) {
-        const F32x8 sx = f32x8_set((double)cell->x_m[n]), sy = f32x8_set((double)cell->y_m[n]);
-        const F32x8 dx = x - sx, dy = y - sy, ax = sx - own_x, ay = sy - own_y;
-        const F32x8 more = f32x8_fma(dx, dx, dy * dy) - least, apart = f32x8_fma(ax, ax, ay * ay);
-        const F32x8 square = more * more, same = i32x8_equal(own, i32x8_set(cell->field[n]));
-        const F32x8 nearer = f32x8_and_not(f32x8_less(square * best_apart, best * apart), same);
-        best = f32x8_select(nearer, square, best);
-        best_apart = f32x8_select(nearer, apart, best_apart);
-        found = i32x8_select(nearer, i32x8_set(n), found);
-        near = f32x8_or(near, nearer);
-    }
-    *other = found;
-    return f32x8_bits(near);
-}
-
 void invented_fields(SlowFields *out, const InventedGround *ground, const double x_m[8], const double y_m[8],
                      F32x8 slope)
 {
@@ -220,92 +175,127 @@ void invented_fields(SlowFields *out, const InventedGround *ground, const double
     out->large = noise_eight(seed + 10, 310, x_m, y_m);
     out->slope = slope;
     plot_bend_by(&out->bend_x, &out->bend_y, seed, x_m, y_m);
+    out->tame = out->untouched = false;
+}
+
+static const double wild_wander = 0.02; /* moves the borders of wild patches by some metres */
+/* from where on ground is wild, beside 0 */
+static const double dry_grass_from = -0.1, bare_soil_from = -0.16, worn_below = -0.2;
+
+/* Where each is above 0 scrub grows, rock shows, and wet grass grows. */
+typedef struct Wild {
+    F32x8 grown, stony, marsh;
+} Wild;
+
+/* Wild patches are wider where it is steep; rock shows in their middles and on worn crests; scrub and wet grass grow in
+ * hollows. All three never fall as the fields rise, but that rock is less where it is wet. */
+static inline Wild wild_of(const SlowFields *slow)
+{
+    const F32x8 middle = slow->middle, patch = slow->patch, wet = slow->wet, slope = slow->slope;
+    F32x8       wild = f32x8_fma(f32x8_set(0.5), middle, slow->large);
+    wild = f32x8_fma(f32x8_set(0.14), patch, wild);
+    wild = f32x8_fma(f32x8_set(4), slope, wild);
+    const F32x8 stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
+    const F32x8 marsh = f32x8_fma(f32x8_set(0.35), middle, wet) - f32x8_set(0.92);
+    return (Wild){.grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, f32x8_set(0)), wild) - f32x8_set(0.88),
+                  .stony = f32x8_fma(f32x8_set(0.12), f32x8_clamp(slope * f32x8_set(5), 0, 1), stony),
+                  .marsh = f32x8_fma(f32x8_set(0.22), patch, marsh)};
+}
+
+bool invented_wild_alike(const WildEnds *e)
+{
+    enum { low, high, low_wet, high_dry };
+    /* lanes: all low, all high; the same with the other end of `wet`, for what falls with it */
+    const int    end[4] = {0, 1, 0, 1}, wet_end[4] = {0, 1, 1, 0};
+    float        field[5][8] = {{0}}, grown[8], stony[8], marsh[8];
+    const double off = wild_wander + 1e-4;
+    for (int k = 0; k < 4; k++) {
+        field[0][k] = e->large[end[k]], field[1][k] = e->middle[end[k]], field[2][k] = e->patch[end[k]];
+        field[3][k] = e->slope[end[k]], field[4][k] = e->wet[wet_end[k]];
+    }
+    const Wild wild = wild_of(&(SlowFields){.large = f32x8_load(field[0]),
+                                            .middle = f32x8_load(field[1]),
+                                            .patch = f32x8_load(field[2]),
+                                            .slope = f32x8_load(field[3]),
+                                            .wet = f32x8_load(field[4])});
+    f32x8_store(grown, wild.grown), f32x8_store(stony, wild.stony), f32x8_store(marsh, wild.marsh);
+    const double from[6][3] = {{(double)grown[low], (double)grown[high], 0},
+                               {(double)grown[low], (double)grown[high], dry_grass_from},
+                               {(double)marsh[low], (double)marsh[high], 0},
+                               {(double)stony[low_wet], (double)stony[high_dry], 0},
+                               {(double)stony[low_wet], (double)stony[high_dry], bare_soil_from},
+                               {(double)e->wet[0], (double)e->wet[1], worn_below}};
+    const int    rules = (double)stony[high_dry] + off < bare_soil_from ? 5 : 6; /* nothing there to wear off */
+    for (int n = 0; n < rules; n++)
+        if (from[n][0] - off <= from[n][2] && from[n][1] + off >= from[n][2]) return false;
+    return true;
+}
+
+/* Lanes on whose class the finest noise may bear, by which the borders of wild patches wander. */
+static unsigned close_to_wild(const Wild *wild)
+{
+    const F32x8 step = f32x8_set(wild_wander), dry_from = f32x8_set(dry_grass_from),
+                soil_from = f32x8_set(bare_soil_from);
+    F32x8 close = f32x8_less(f32x8_abs(wild->grown), step);
+    close = f32x8_or(close, f32x8_less(f32x8_abs(wild->grown - dry_from), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(wild->stony), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(wild->stony - soil_from), step));
+    return f32x8_bits(f32x8_or(close, f32x8_less(f32x8_abs(wild->marsh), step)));
+}
+
+/* Classes of wild patches over those of fields. */
+static I32x8 grow_wild(I32x8 class, const Wild *wild, F32x8 wet)
+{
+    const F32x8 zero = f32x8_set(0), worn = f32x8_less(wet, f32x8_set(worn_below));
+    const F32x8 soil = f32x8_and(worn, f32x8_greater(wild->stony, f32x8_set(bare_soil_from)));
+    class = i32x8_select(f32x8_greater(wild->grown, f32x8_set(dry_grass_from)), i32x8_set(SURFACE_DRY_GRASS), class);
+    class = i32x8_select(f32x8_greater(wild->marsh, zero), i32x8_set(SURFACE_WETLAND), class);
+    class = i32x8_select(f32x8_greater(wild->grown, zero), i32x8_set(SURFACE_SCRUB), class);
+    class = i32x8_select(soil, i32x8_set(SURFACE_BARE_SOIL), class);
+    return i32x8_select(f32x8_greater(wild->stony, zero), i32x8_set(SURFACE_ROCK), class);
 }
 
 void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8], const double y_m[8],
                        const SlowFields *slow, unsigned lanes)
 {
-    static const double wild_wander = 0.02; /* moves the borders of wild patches by some metres */
-    const uint64_t      seed = ground->seed;
-    const F32x8         zero = f32x8_set(0), step = f32x8_set(wild_wander);
-    /* wild patches are wider where it is steep; rock shows in their middles and on worn crests; scrub and wet grass
-     * grow in hollows */
-    const F32x8 middle = slow->middle, patch = slow->patch, wet = slow->wet, slope = slow->slope;
-    F32x8       wild = f32x8_fma(f32x8_set(0.5), middle, slow->large);
-    wild = f32x8_fma(f32x8_set(0.14), patch, wild);
-    wild = f32x8_fma(f32x8_set(4), slope, wild);
-    F32x8 grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, zero), wild) - f32x8_set(0.88);
-    F32x8 stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
-    stony = f32x8_fma(f32x8_set(0.12), f32x8_clamp(slope * f32x8_set(5), 0, 1), stony);
-    F32x8 marsh = f32x8_fma(f32x8_set(0.35), middle, wet) - f32x8_set(0.92);
-    marsh = f32x8_fma(f32x8_set(0.22), patch, marsh);
-    const F32x8 dry_from = f32x8_set(-0.1), soil_from = f32x8_set(-0.16);
-
-    double  i[8], j[8], bent_x[8], bent_y[8];
-    float   in_x[8], in_y[8], wander_of[8], patch_of[8];
-    int32_t site_of[8], other_of[8], found[8], cell_of[8];
-    F32x8   x, y;
-    I32x8 class = i32x8_set(SURFACE_NONE), sites = i32x8_set(0), others = i32x8_set(0);
-    unsigned near = 0, touched = 0;
+    const uint64_t seed = ground->seed;
+    double         bent_x[8], bent_y[8];
+    float          wander_of[8] = {0}, patch_of[8];
+    int32_t        found[8], cell_of[8];
+    unsigned       touched = 0;
+    PlotPlaces     plots;
+    Wild           wild;
     plot_bent(bent_x, bent_y, seed, x_m, y_m, slow->bend_x, slow->bend_y);
-    plot_cells_of(i, j, &x, &y, bent_x, bent_y);
-    for (unsigned left = lanes, same; left; left &= ~same) {
-        same = plot_cell_lanes(i, j, left);
-        const int       first = __builtin_ctz(left);
-        const PlotCell *cell = plot_cell_at(seed, (int64_t)i[first], (int64_t)j[first]);
-        I32x8           site, other;
-        const F32x8     least = plot_nearest(&site, cell, x, y), here = f32x8_mask(same);
-        class = i32x8_select(here, plot_look(cell->crop, site), class);
-        sites = i32x8_select(here, site, sites);
-        near |= near_border(&other, cell, x, y, site, least) & same;
-        others = i32x8_select(here, other, others);
-    }
-    if (ground->ways) {
+    plots_find(&plots, seed, bent_x, bent_y, lanes);
+    if (!slow->tame) wild = wild_of(slow);
+    if (ground->ways && !slow->untouched) {
         const I32x8 touches = ways_cells(ground->ways, x_m, y_m);
         touched = f32x8_bits(i32x8_greater(touches, i32x8_set(-1))) & lanes;
         if (touched) i32x8_store(cell_of, touches);
     }
 
-    /* the finest noise is evaluated only for lanes near a border */
-    F32x8 close = f32x8_less(f32x8_abs(grown), step);
-    close = f32x8_or(close, f32x8_less(f32x8_abs(grown - dry_from), step));
-    close = f32x8_or(close, f32x8_less(f32x8_abs(stony), step));
-    close = f32x8_or(close, f32x8_less(f32x8_abs(stony - soil_from), step));
-    close = f32x8_or(close, f32x8_less(f32x8_abs(marsh), step));
-    const unsigned wanders = (f32x8_bits(close) | near | touched) & lanes;
+    /* the finest noise is evaluated only for lanes whose class it can change */
+    const unsigned close = slow->tame ? 0 : close_to_wild(&wild);
+    const unsigned wanders = (close | (plots.near & ~plots.sure) | touched) & lanes;
+    F32x8          wander = f32x8_set(0);
     if (wanders) {
-        const F32x8 wander = f32x8_and(wander_eight(seed, x_m, y_m), f32x8_mask(wanders));
-        grown = f32x8_fma(step, wander, grown);
-        stony = f32x8_fma(step, wander, stony);
-        marsh = f32x8_fma(step, wander, marsh);
+        const F32x8 step = f32x8_set(wild_wander);
+        wander = f32x8_and(wander_eight(seed, x_m, y_m), f32x8_mask(wanders));
+        if (!slow->tame) {
+            wild.grown = f32x8_fma(step, wander, wild.grown);
+            wild.stony = f32x8_fma(step, wander, wild.stony);
+            wild.marsh = f32x8_fma(step, wander, wild.marsh);
+        }
         f32x8_store(wander_of, wander);
     }
-    const F32x8 rock = f32x8_greater(stony, zero);
-    if (near & ~f32x8_bits(rock)) {
-        i32x8_store(site_of, sites), i32x8_store(other_of, others);
-        i32x8_store(found, class);
-        f32x8_store(in_x, x), f32x8_store(in_y, y);
-    }
-    SurfaceClass on_border[8];
-    unsigned     bordered = 0;
-    for (unsigned left = near & ~f32x8_bits(rock); left; left &= left - 1) {
-        const int k = __builtin_ctz(left);
-        PlotCell *cell = plot_cell_at(seed, (int64_t)i[k], (int64_t)j[k]);
-        on_border[k] = border_surface(&found[k], cell, seed, site_of[k], other_of[k], in_x[k], in_y[k], wander_of[k]);
-        if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
-    }
-    if (near & ~f32x8_bits(rock)) class = i32x8_load(found);
+    const unsigned rock = slow->tame ? 0 : f32x8_bits(f32x8_greater(wild.stony, f32x8_set(0)));
+    const unsigned on_border = plots.near & ~rock;
+    const I32x8    border = on_border ? plots_on_borders(&plots, wander, on_border) : i32x8_set(SURFACE_NONE);
 
-    class = i32x8_select(f32x8_greater(grown, dry_from), i32x8_set(SURFACE_DRY_GRASS), class);
-    class = i32x8_select(f32x8_greater(marsh, zero), i32x8_set(SURFACE_WETLAND), class);
-    class = i32x8_select(f32x8_greater(grown, zero), i32x8_set(SURFACE_SCRUB), class);
-    const F32x8 worn = f32x8_less(wet, f32x8_set(-0.2));
-    class = i32x8_select(f32x8_and(worn, f32x8_greater(stony, soil_from)), i32x8_set(SURFACE_BARE_SOIL), class);
-    class = i32x8_select(rock, i32x8_set(SURFACE_ROCK), class);
+    I32x8 class = slow->tame ? plots.crop : grow_wild(plots.crop, &wild, slow->wet);
+    class = i32x8_select(i32x8_equal(border, i32x8_set(SURFACE_NONE)), class, border);
     i32x8_store(found, class);
-    for (; bordered; bordered &= bordered - 1)
-        found[__builtin_ctz(bordered)] = (int32_t)on_border[__builtin_ctz(bordered)];
-    if (touched) f32x8_store(patch_of, patch);
+    if (touched) f32x8_store(patch_of, slow->patch);
     for (; touched; touched &= touched - 1) {
         const int k = __builtin_ctz(touched);
         found[k] = (int32_t)ways_surface(ground->ways, cell_of[k], x_m[k], y_m[k], (SurfaceClass)found[k], wander_of[k],
@@ -313,6 +303,30 @@ void invented_surfaces(int32_t surface[8], const InventedGround *ground, const d
     }
     for (int k = 0; k < 8; k++)
         if (lanes >> k & 1) surface[k] = found[k];
+}
+
+static inline float greatest(F32x8 x)
+{
+    float of[8], most = -INFINITY;
+    f32x8_store(of, x);
+    for (int k = 0; k < 8; k++) most = of[k] > most ? of[k] : most;
+    return most;
+}
+
+/* Whether nothing grows wild, and no rock shows, at any place whose fields are between these. */
+static bool all_tame(const SlowFields *slow)
+{
+    const F32x8  wet = f32x8_set((double)greatest(slow->wet)), dry = f32x8_set(-(double)greatest(-slow->wet));
+    SlowFields   most = {.large = f32x8_set((double)greatest(slow->large)),
+                         .middle = f32x8_set((double)greatest(slow->middle)),
+                         .patch = f32x8_set((double)greatest(slow->patch)),
+                         .slope = f32x8_set((double)greatest(slow->slope)),
+                         .wet = wet};
+    const double off = wild_wander + 1e-4;
+    const Wild   wild = wild_of(&most);
+    most.wet = dry;
+    return (double)greatest(wild.grown) + off < dry_grass_from && (double)greatest(wild.marsh) + off < 0 &&
+           (double)greatest(wild_of(&most).stony) + off < bare_soil_from;
 }
 
 /* ---- a few metres --------------------------------------------------------------------------- */
@@ -358,6 +372,10 @@ void invented_nodes(SlowNodes *out, const InventedGround *ground, const Elevatio
     if (invented_grounded(elevation, x, y) != 0xff) return;
     out->known = true;
     invented_fields(&out->field, ground, x, y, invented_slopes(elevation, x, y, 0xff));
+    out->tame = all_tame(&out->field);
+    /* corners of the places' area are nodes, and index cells are larger than that */
+    const I32x8 touches = ground->ways ? ways_cells(ground->ways, x, y) : i32x8_set(-1);
+    out->field.untouched = f32x8_bits(i32x8_greater(touches, i32x8_set(-1))) == 0;
 }
 
 static inline F32x8 between_nodes(F32x8 node, I32x8 cell, F32x8 along, F32x8 across)
@@ -381,8 +399,19 @@ void invented_between(SlowFields *out, const SlowNodes *nodes, const double x_m[
     const F32x8       u = at - whole, v = f32x8_clamp(f32x8_of_doubles(across), 0, 1);
     const I32x8       cell = i32x8_truncate(whole);
     const SlowFields *f = &nodes->field;
-    *out = (SlowFields){between_nodes(f->large, cell, u, v), between_nodes(f->middle, cell, u, v),
-                        between_nodes(f->patch, cell, u, v), between_nodes(f->slope, cell, u, v),
-                        between_nodes(f->wet, cell, u, v),   between_nodes(f->bend_x, cell, u, v),
-                        between_nodes(f->bend_y, cell, u, v)};
+    if (nodes->tame) {
+        out->patch = between_nodes(f->patch, cell, u, v);
+        out->bend_x = between_nodes(f->bend_x, cell, u, v), out->bend_y = between_nodes(f->bend_y, cell, u, v);
+        out->tame = true, out->untouched = f->untouched;
+        return;
+    }
+    *out = (SlowFields){between_nodes(f->large, cell, u, v),
+                        between_nodes(f->middle, cell, u, v),
+                        between_nodes(f->patch, cell, u, v),
+                        between_nodes(f->slope, cell, u, v),
+                        between_nodes(f->wet, cell, u, v),
+                        between_nodes(f->bend_x, cell, u, v),
+                        between_nodes(f->bend_y, cell, u, v),
+                        false,
+                        f->untouched};
 }

@@ -112,7 +112,7 @@ static inline F32x8 noise_pair_eight(F32x8 *second, uint64_t seed, double wavele
 /* ---- fields ------------------------------------------------------------------------------- */
 
 static const double plot_m = 160;
-enum { plot_sites = 9, plot_cells_kept = 128 };
+enum { plot_sites = 9, plot_cells_kept = 128, plot_parts = 8 /* of a cell, along a side */ };
 
 /* The border between two sites; it is computed when it is first needed. */
 typedef struct PlotEdge {
@@ -132,6 +132,9 @@ typedef struct PlotCell {
     int32_t  crop[plot_sites];  /* SurfaceClass */
     float    across_x[plot_sites], across_y[plot_sites]; /* unit vector across the rows of its field */
     PlotEdge edge[plot_sites][plot_sites];
+    /* of each part of the cell, when it is first needed: bits of the sites that can be nearest to a place in it, or
+     * beyond a border that is; 0: not known */
+    uint16_t sites_about[plot_parts * plot_parts];
 } PlotCell;
 
 /* The border between two sites of different fields, at a place in the first of them. */
@@ -141,7 +144,9 @@ typedef struct PlotBorder {
     bool   track, hedge; /* whether a track, and a hedge, runs along the border */
 } PlotBorder;
 
-PlotBorder plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
+/* Of two sites of different fields. */
+const PlotEdge *plot_edge(PlotCell *cell, uint64_t seed, int site, int other);
+PlotBorder      plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
 
 /* The nearest border about a place, the unit vector away from it, but for the bend, and a number of its two fields. */
 bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m);
@@ -156,17 +161,18 @@ static inline void plot_turn(double *cosine, double *sine, uint64_t seed)
     *cosine = of[h >> 61][swap], *sine = of[h >> 61][1 - swap];
 }
 
+static const double plot_bend_wave_m[] = {2300, 330}, plot_bend_away_m[] = {260, 28};
+
 /* How far eight places are moved by the bend of the plane on which fields are laid out: it is turned, and bent over
  * hundreds of metres. */
 static inline void plot_bend_by(F32x8 *by_x, F32x8 *by_y, uint64_t seed, const double x_m[8], const double y_m[8])
 {
-    static const double wave_m[] = {2300, 330}, away_m[] = {260, 28};
-    F32x8               dx = f32x8_set(0), dy = f32x8_set(0);
+    F32x8 dx = f32x8_set(0), dy = f32x8_set(0);
     for (int n = 0; n < 2; n++) {
         F32x8 wave_y;
-        dx = f32x8_fma(f32x8_set(away_m[n]), noise_pair_eight(&wave_y, seed + 26 + (uint64_t)n, wave_m[n], x_m, y_m),
-                       dx);
-        dy = f32x8_fma(f32x8_set(away_m[n]), wave_y, dy);
+        dx = f32x8_fma(f32x8_set(plot_bend_away_m[n]),
+                       noise_pair_eight(&wave_y, seed + 26 + (uint64_t)n, plot_bend_wave_m[n], x_m, y_m), dx);
+        dy = f32x8_fma(f32x8_set(plot_bend_away_m[n]), wave_y, dy);
     }
     *by_x = dx, *by_y = dy;
 }
@@ -239,6 +245,24 @@ static inline F32x8 plot_nearest(I32x8 *site, const PlotCell *cell, F32x8 x_m, F
 
 static inline I32x8 plot_look(const int32_t value[plot_sites], I32x8 site) { return i32x8_gather(value, site); }
 
+/* Eight places among the fields. */
+typedef struct PlotPlaces {
+    I32x8    crop; /* of the field: SurfaceClass */
+    unsigned near; /* lanes within reach of a border between their field and another; the rest is of these lanes */
+    unsigned sure; /* whose class on the border does not depend on how it wanders */
+    unsigned first, track, hedge; /* as in PlotBorder */
+    I32x8    beyond;              /* crop of the field beyond the border */
+    double   away_m[8];           /* distance of the border */
+} PlotPlaces;
+
+/* Of places on the plane of fields, those of these lanes. */
+void plots_find(PlotPlaces *out, uint64_t seed, const double bent_x[8], const double bent_y[8], unsigned lanes);
+/* Classes on borders that wander, -1 .. 1, of these lanes, which are near some; SURFACE_NONE: that of the field. Crops
+ * become those of the fields that the places are in then. */
+I32x8 plots_on_borders(PlotPlaces *places, F32x8 wander, unsigned lanes);
+/* Whether all places this near one on the plane of fields are of one field, and no border changes their class. */
+bool plots_alike(uint64_t seed, const double bent_m[2], double radius_m);
+
 /* ---- classes ------------------------------------------------------------------------------ */
 
 /* The slowly varying fields that the synthetic cover follows, of wavelengths from 17 m on, at eight places. */
@@ -246,6 +270,8 @@ typedef struct SlowFields {
     F32x8 large, middle, patch; /* noise of 310, 83 and 17 m */
     F32x8 slope, wet;
     F32x8 bend_x, bend_y; /* plot_bend_by */
+    bool  tame;           /* no place is wild: large, middle, slope and wet are not set */
+    bool  untouched;      /* no way touches the index cell of any place */
 } SlowFields;
 
 /* Two by four nodes about places a few metres apart: between the nodes the slow fields are linear. */
@@ -254,14 +280,24 @@ typedef struct SlowNodes {
     bool       east;             /* the four nodes lie from west to east; otherwise from south to north */
     double     x0_m, y0_m;       /* place of the south-west node */
     double     per_x_m, per_y_m; /* nodes a metre */
+    bool       tame;             /* no place between them is wild: but for `patch` and bends, fields are not needed */
     SlowFields field;            /* lanes: nodes along the longer side, then across */
 } SlowNodes;
 
 /* Lanes of places where there is ground, that is, inside the outermost level, which encloses the others. NaN: no
  * ground. */
-unsigned invented_grounded(const Elevation *elevation, const double x_m[8], const double y_m[8]);
-/* Slope of the terrain about the places, without the tilt of the plane far from its origin. */
+unsigned            invented_grounded(const Elevation *elevation, const double x_m[8], const double y_m[8]);
+static const double invented_arm_m = 10;
+/* Slope of the terrain about the places, over twice this length, without the tilt of the plane far from its origin. */
 F32x8 invented_slopes(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes);
+
+/* Lowest and highest of slow fields over an area. */
+typedef struct WildEnds {
+    float large[2], middle[2], patch[2], slope[2], wet[2];
+} WildEnds;
+
+/* Whether no such field makes one place of the area wild and another not, or otherwise. */
+bool invented_wild_alike(const WildEnds *ends);
 
 void invented_fields(SlowFields *out, const InventedGround *ground, const double x_m[8], const double y_m[8],
                      F32x8 slope);

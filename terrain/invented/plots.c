@@ -84,14 +84,20 @@ static PlotEdge find_edge(const PlotCell *cell, uint64_t seed, int site, int oth
                       .apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3)};
 }
 
+const PlotEdge *plot_edge(PlotCell *cell, uint64_t seed, int site, int other)
+{
+    PlotEdge *edge = &cell->edge[site][other];
+    if (!edge->known) *edge = find_edge(cell, seed, site, other);
+    return edge;
+}
+
 PlotBorder plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m)
 {
     /* distance to the perpendicular bisector of the two sites */
-    const double own_x = (double)(x_m - cell->x_m[site]), own_y = (double)(y_m - cell->y_m[site]);
-    const double off_x = (double)(x_m - cell->x_m[other]), off_y = (double)(y_m - cell->y_m[other]);
-    const double more = off_x * off_x + off_y * off_y - (own_x * own_x + own_y * own_y);
-    PlotEdge    *edge = &cell->edge[site][other];
-    if (!edge->known) *edge = find_edge(cell, seed, site, other);
+    const double    own_x = (double)(x_m - cell->x_m[site]), own_y = (double)(y_m - cell->y_m[site]);
+    const double    off_x = (double)(x_m - cell->x_m[other]), off_y = (double)(y_m - cell->y_m[other]);
+    const double    more = off_x * off_x + off_y * off_y - (own_x * own_x + own_y * own_y);
+    const PlotEdge *edge = plot_edge(cell, seed, site, other);
     return (PlotBorder){
         .away_m = 0.5 * more / edge->apart_m, .first = edge->first, .track = edge->track, .hedge = edge->hedge};
 }

@@ -352,6 +352,46 @@ SurfaceClass ways_surface(const Ways *ways, int32_t cell, double x_m, double y_m
     return surface;
 }
 
+/* Whether an item changes no class within a radius of a place, which is relative to the square's corner. */
+static bool item_clear(const Ways *ways, uint32_t item, double x, double y, double radius_m)
+{
+    static const double bank_m = 7.7; /* beyond a pond, with what its border wanders */
+    const uint32_t      number = item & 0xfffffff;
+    double              across_m, along_m;
+    switch ((WayItem)(item >> 28)) {
+    case WAY_ITEM_SEGMENT: {
+        const WaySegment *s = &ways->segment[number];
+        const double      beyond_m = beyond_edge(&across_m, &along_m, s, x, y);
+        return beyond_m > beside_m[s->kind] + radius_m * (1 + fabs((double)s->widens));
+    }
+    case WAY_ITEM_POND: {
+        const Pond *p = &ways->pond[number];
+        return hypot(x - (double)p->x_m, y - (double)p->y_m) > (double)p->most_m + bank_m + radius_m;
+    }
+    case WAY_ITEM_PLOT: {
+        const HousePlot *p = &ways->plot[number];
+        const double     dx = x + ways->x0_m - p->x_m, dy = y + ways->y0_m - p->y_m;
+        return fabs(dx * p->direction[0] + dy * p->direction[1]) > p->half_along_m + radius_m ||
+               fabs(p->direction[0] * dy - p->direction[1] * dx) > p->half_across_m + radius_m;
+    }
+    default:
+        return false;
+    }
+}
+
+bool ways_clear(const Ways *ways, const double place_m[2], double radius_m)
+{
+    const double x = place_m[0] - ways->x0_m, y = place_m[1] - ways->y0_m, per_m = 1 / ways->index_m;
+    const int west = (int)fmax(floor((x - radius_m) * per_m), 0), south = (int)fmax(floor((y - radius_m) * per_m), 0);
+    const int east = (int)fmin(floor((x + radius_m) * per_m), ways->nx - 1);
+    const int north = (int)fmin(floor((y + radius_m) * per_m), ways->ny - 1);
+    for (int j = south; j <= north; j++)
+        for (int i = west; i <= east; i++)
+            for (int n = ways->start[j * ways->nx + i]; n < ways->start[j * ways->nx + i + 1]; n++)
+                if (!item_clear(ways, ways->item[n], x, y, radius_m)) return false;
+    return true;
+}
+
 /* ---- the whole -------------------------------------------------------------------------------- */
 
 Status ways_create(Ways **out, const WaysGround *ground)

@@ -96,6 +96,8 @@ I32x8 ways_cells(const Ways *ways, const double x_m[8], const double y_m[8]);
  * beside ways. */
 SurfaceClass ways_surface(const Ways *ways, int32_t cell, double x_m, double y_m, SurfaceClass field, float wander,
                           float patch);
+/* Whether nothing of the ways changes the class of any place so near a place; false: not proven. */
+bool ways_clear(const Ways *ways, const double place_m[2], double radius_m);
 /* How wet eight places are, -1 .. 1. */
 F32x8 ways_wet(const Ways *ways, const double x_m[8], const double y_m[8]);
 

@@ -17,7 +17,7 @@
 #include "render/scene/hits.h"
 #include "render/scene/view.h"
 #include "terrain/elevation/elevation.h"
-#include "terrain/ground/landscape.h"
+#include "terrain/ground/surface_cells.h"
 #include "terrain/earth/geodesy.h"
 
 /* ---- skips ----------------------------------------------------------------------------------- */
@@ -87,6 +87,7 @@ typedef struct VisibilityConfig {
     const Snapshot   *snapshot;
     unsigned          skips_off;
     double            eye_enu[3], bend_per_m; /* 0: straight */
+    SurfaceCells     *cells;                  /* of the ground; may be NULL */
 } VisibilityConfig;
 
 Status visibility_create_seen(Visibility **out, const VisibilityConfig *config, Arena *arena);

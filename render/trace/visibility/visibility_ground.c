@@ -133,7 +133,7 @@ static void ground_finish(Hits *hits, const int *list, int count, const void *fo
         hits->kind[i] = hit_ground;
         x_m[i] = hits->p_enu[0][i], y_m[i] = hits->p_enu[1][i];
     }
-    landscape_surfaces(hits->surface, v->landscape, hits->count, x_m, y_m);
+    surface_cells_at(hits->surface, v->cells, v->landscape, hits->count, x_m, y_m);
     for (int i = 0; i < hits->count && v->materials; i++)
         if (hits->surface[i]) hits->material[i] = (uint16_t)v->materials->surface[hits->surface[i]];
 }

@@ -135,7 +135,7 @@ static Status bound_entities(Visibility *v, Arena *arena)
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
                          const Snapshot *snapshot, unsigned skips_off, Arena *arena)
 {
-    const VisibilityConfig straight = {tracer, ground, frame, snapshot, skips_off, {0, 0, 0}, 0};
+    const VisibilityConfig straight = {tracer, ground, frame, snapshot, skips_off, {0, 0, 0}, 0, NULL};
     return visibility_create_seen(out, &straight, arena);
 }
 
@@ -147,6 +147,7 @@ Status visibility_create_seen(Visibility **out, const VisibilityConfig *config, 
     if (!v) return STATUS_NO_MEMORY;
     *v = (Visibility){.tracer = config->tracer,
                       .landscape = config->ground,
+                      .cells = config->cells,
                       .frame = config->frame,
                       .snapshot = snapshot,
                       .skips_off = config->skips_off,

@@ -37,6 +37,7 @@ struct Visibility {
     size_t                        found_octets;
     Tracer                       *tracer;
     const Landscape              *landscape;
+    SurfaceCells                 *cells;
     const Materials              *materials; /* NULL: hits have no material */
     const LocalFrame             *frame;
     const Snapshot               *snapshot;
