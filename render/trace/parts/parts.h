@@ -75,8 +75,8 @@ int parts_largest_node(const PosedEntity *entity);
 /* Low and high corner of a box in its axes about its patch number k (a triangle, or neighbours with much the same box);
  * low above high: none of it has an area. False: k is out of range. */
 bool parts_node_patch(double box[2][3], const PosedNode *node, int k);
-/* The three corners of its triangle number k, in its axes; NULL: k is out of range. */
-const double (*parts_node_triangle(const PosedNode *node, int k))[3];
+/* The three corners of its triangle number k, in its axes. False: k is out of range. */
+bool parts_node_triangle(double corner[3][3], const PosedNode *node, int k);
 
 /* Number of nodes that posing an entity of this model needs memory for, at most. */
 int parts_node_count(const Tracer *tracer, int model);
