@@ -120,6 +120,20 @@ typedef struct PosedFacet {
     double           even_enu[3];                          /* unit */
 } PosedFacet;
 
+/* Fetches into the cache what parts_facet reads of a triangle of the model: first its indices, later what they lead to. */
+static inline void parts_fetch(const Model *model, uint32_t triangle, bool first)
+{
+    const uint32_t *index = model->triangle[triangle];
+    if (first) {
+        __builtin_prefetch(index);
+        __builtin_prefetch(&model->triangle_part[triangle]);
+        return;
+    }
+    for (int c = 0; c < 3; c++) {
+        __builtin_prefetch(model->vertex[index[c]]);
+        __builtin_prefetch(model->normal[index[c]]);
+    }
+}
 void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entity, const PartHit *hit);
 /* Unit normals at a distance along the ray, on the ray's side: of the triangle, and interpolated. */
 void parts_facet_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedFacet *facet,

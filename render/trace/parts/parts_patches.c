@@ -43,7 +43,7 @@ static void bound(double low[3], double high[3], const Patch *patch)
 /* A patch of one triangle, and a box about it. */
 static void begin_patch(Patch *patch, double low[3], double high[3], const NodeMesh *mesh, int t)
 {
-    *patch = (Patch){.facet = (uint32_t)t, .count = 1};
+    *patch = (Patch){.triangle = mesh->triangle[t], .count = 1};
     for (int c = 0; c < 3; c++) memcpy(patch->corner[c], parts_corner(mesh, t, c), sizeof patch->corner[c]);
     memcpy(patch->corner[3], patch->corner[0], sizeof patch->corner[3]);
     measure(patch->height_m[0], mesh, t);
@@ -73,7 +73,7 @@ static void take_patch(Patch *out, const NodeMesh *mesh, int t)
     double low[3], high[3], next_low[3], next_high[3];
     Patch  next;
     begin_patch(out, low, high, mesh, t);
-    if (t + 1 == mesh->triangle_count) return;
+    if (t + 1 == mesh->triangle_count || mesh->triangle[t + 1] != mesh->triangle[t] + 1) return;
     begin_patch(&next, next_low, next_high, mesh, t + 1);
     const double sum_m2 = half_surface_m2(low, high) + half_surface_m2(next_low, next_high);
     for (int x = 0; x < 3; x++) low[x] = fmin(low[x], next_low[x]), high[x] = fmax(high[x], next_high[x]);

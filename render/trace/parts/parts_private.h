@@ -14,7 +14,7 @@ enum { patch_corners = 4, patch_most = 2 };
 typedef struct Patch {
     double   corner[patch_corners][3]; /* node axes; the first triangle's, and the second's fourth */
     float    height_m[patch_most][3];  /* over the side from corner c to the next */
-    uint32_t facet;                    /* the first, of NodeMesh.triangle */
+    uint32_t triangle;                 /* of the model: the first; the second is the next */
     uint8_t  count, second[3];         /* triangles; corners of the second */
 } __attribute__((aligned(64))) Patch;
 

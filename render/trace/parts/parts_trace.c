@@ -106,19 +106,19 @@ static void offer_lowest(Packet *p, int lane, uint32_t triangle, double at_m)
 }
 
 /* A triangle that a lane passes near; end_m: Embree's limit. */
-static inline void offer(Packet *p, int lane, uint32_t facet, double at_m, bool through, float *end_m)
+static inline void offer(Packet *p, int lane, uint32_t triangle, double at_m, bool through, float *end_m)
 {
     if (p->lowest_only) {
-        offer_lowest(p, lane, facet, at_m);
+        offer_lowest(p, lane, triangle, at_m);
         return;
     }
     if (!(at_m <= p->nearest_m[lane] + same_range_m)) return;
     if (through && at_m < p->nearest_m[lane]) {
-        bring_nearer(p, lane, facet, at_m);
+        bring_nearer(p, lane, triangle, at_m);
         const float stop_m = (float)(at_m + slack_m);
         if (stop_m < p->end_m[lane]) *end_m = p->end_m[lane] = stop_m;
     }
-    keep_tie(p, lane, facet, at_m);
+    keep_tie(p, lane, triangle, at_m);
 }
 
 /* Fields of N rays lie one after another (rtcore_ray.h). */
@@ -137,7 +137,7 @@ void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
         for (unsigned f = 0; f < patch->count; f++)
             for (unsigned left = v[f].near & of; left; left &= left - 1) {
                 const int bit = __builtin_ctz(left), lane = 4 * four + bit;
-                offer(p, lane, patch->facet + f, v[f].at_m[bit], v[f].through >> bit & 1, &end_m[place[lane]]);
+                offer(p, lane, patch->triangle + f, v[f].at_m[bit], v[f].through >> bit & 1, &end_m[place[lane]]);
             }
     }
 }
@@ -218,7 +218,7 @@ static double settle(uint32_t *triangle, Packet *p, const struct RTCRay16 *rays,
     for (int k = 0; k < p->ties[l]; k++) offer_lowest(p, l, p->tie[l][k], p->tie_m[l][k]);
     /* it is among those stored, unless the second pass found less than the first: then it is the result */
     offer_lowest(p, l, p->nearest[l], nearest_m);
-    *triangle = p->mesh->triangle[p->lowest[l]];
+    *triangle = p->lowest[l];
     return p->lowest_m[l];
 }
 
