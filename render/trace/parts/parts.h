@@ -120,7 +120,8 @@ typedef struct PosedFacet {
     double           even_enu[3];                          /* unit */
 } PosedFacet;
 
-/* Fetches into the cache what parts_facet reads of a triangle of the model: first its indices, later what they lead to. */
+/* Fetches into the cache what parts_facet reads of a triangle of the model: first its indices, later what they lead to.
+ */
 static inline void parts_fetch(const Model *model, uint32_t triangle, bool first)
 {
     const uint32_t *index = model->triangle[triangle];

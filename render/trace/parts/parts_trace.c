@@ -18,7 +18,7 @@ static const double slack_m = 2e-3;    /* search distance beyond the nearest hit
 
 /* Of a triangle, for four lanes. */
 typedef struct Verdict {
-    double at_m[4]; /* where near: distance to the plane, clamped between the corners: edge-on it is undefined */
+    double   at_m[4]; /* where near: distance to the plane, clamped between the corners: edge-on it is undefined */
     unsigned near, through; /* 1 << lane % 4: passed by within same_edge_m, ahead; and through */
 } __attribute__((aligned(64))) Verdict;
 
@@ -28,9 +28,9 @@ static inline void judge(Verdict *v, Vector a, Vector b, Vector c, Vector d, con
 {
     const F64x4 ab = dot(cross(a, b), d), bc = dot(cross(b, c), d), ca = dot(cross(c, a), d);
     const F64x4 whole = ab + bc + ca, share = f64x4_set(1) / whole;
-    const F64x4 inside_m = f64x4_min(
-        ab * share * f64x4_set((double)height_m[0]),
-        f64x4_min(bc * share * f64x4_set((double)height_m[1]), ca * share * f64x4_set((double)height_m[2])));
+    const F64x4 inside_m =
+        f64x4_min(ab * share * f64x4_set((double)height_m[0]),
+                  f64x4_min(bc * share * f64x4_set((double)height_m[1]), ca * share * f64x4_set((double)height_m[2])));
     const F64x4 seen = _mm256_cmp_pd(whole, f64x4_set(0), _CMP_NEQ_OQ); /* not edge-on */
     const F64x4 near = f64x4_and(seen, f64x4_at_most(f64x4_set(-same_edge_m), inside_m));
     v->near = v->through = f64x4_bits(near);
@@ -124,11 +124,11 @@ static inline void offer(Packet *p, int lane, uint32_t triangle, double at_m, bo
 /* Fields of N rays lie one after another (rtcore_ray.h). */
 void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
 {
-    Packet         *p = (Packet *)a->context;
-    const Patch    *patch = &p->mesh->patch[a->primID];
-    float          *end_m = (float *)a->rayhit + 8 * a->N;
-    uint8_t         place[lanes];
-    const unsigned  asked = asked_lanes(place, a->valid, (const uint32_t *)a->rayhit + 10 * a->N, a->N);
+    Packet        *p = (Packet *)a->context;
+    const Patch   *patch = &p->mesh->patch[a->primID];
+    float         *end_m = (float *)a->rayhit + 8 * a->N;
+    uint8_t        place[lanes];
+    const unsigned asked = asked_lanes(place, a->valid, (const uint32_t *)a->rayhit + 10 * a->N, a->N);
     for (int four = 0; four < lanes / 4; four++) {
         const unsigned of = asked >> 4 * four & 15;
         Verdict        v[patch_most];

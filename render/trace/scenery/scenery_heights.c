@@ -2,9 +2,7 @@
  * pass above all of it. Conservative: a ray that is said to pass meets nothing. */
 #include "render/trace/scenery/scenery_heights_private.h"
 
-#include "pitviper_simd.h"
-
-enum { side_bits = 4, side = 1 << side_bits, cells = side * side, most_tiles = 1 << 20 };
+enum { side = 16, cells = side * side, most_tiles = 1 << 20 };
 static const double finest_m = 2;
 static const float  nothing_m = -INFINITY;
 
@@ -158,63 +156,33 @@ Status scenery_heights_create(SceneryHeights **out, const PosedEntity *posed, in
 
 /* ---- asked for a ray ---------------------------------------------------------------------------- */
 
-/* A mask of four doubles as one of four integers. */
-static inline __m128i narrowed(F64x4 mask)
-{
-    const __m128 low = _mm_castpd_ps(_mm256_castpd256_pd128(mask)), high = _mm_castpd_ps(_mm256_extractf128_pd(mask, 1));
-    return _mm_castps_si128(_mm_shuffle_ps(low, high, 0x88));
-}
-
-/* Those of a mask; the others are not read. */
-static inline F64x4 floats_at(const float *p, __m128i at, F64x4 mask)
-{
-    return _mm256_cvtps_pd(_mm_mask_i32gather_ps(_mm_setzero_ps(), p, at, _mm_castsi128_ps(narrowed(mask)), 4));
-}
-
 /* A way over the cells: one cell along x or y, and no more along the other, at a time. */
 typedef struct Way {
     double x, y, rise_m; /* cells, cells, m: a step */
 } Way;
 
-/* Four rays, x and y in cells: those that do not pass, one bit each. Only lanes of `left` are asked. */
-static unsigned meet_tops(const SceneryHeights *h, F64x4 x, F64x4 y, F64x4 z_m, const Way *way, F64x4 left)
+static bool passes(const SceneryHeights *h, const double o_enu[3], const Way *way)
 {
     enum { most_steps = 64 };
-    const F64x4   zero = f64x4_set(0), x_end = f64x4_set(h->tiles_x * side), y_end = f64x4_set(h->tiles_y * side);
-    const F64x4   x_falls = f64x4_at_most(f64x4_set(way->x), zero), x_rises = f64x4_at_most(zero, f64x4_set(way->x));
-    const F64x4   y_falls = f64x4_at_most(f64x4_set(way->y), zero), y_rises = f64x4_at_most(zero, f64x4_set(way->y));
-    const __m128i within = _mm_set1_epi32(side - 1), tiles_x = _mm_set1_epi32(h->tiles_x), none = _mm_set1_epi32(-1);
-    unsigned      met = 0;
+    double x = (o_enu[0] - h->x0_m) / h->cell_m, y = (o_enu[1] - h->y0_m) / h->cell_m, z_m = o_enu[2];
     for (int step = 0; step < most_steps; step++) {
-        left = f64x4_and_not(left, f64x4_less(f64x4_set((double)h->highest_m), z_m));
-        if (f64x4_bits(left) == 0) return met;
-        const F64x4 behind_x = f64x4_less(x, zero), behind_y = f64x4_less(y, zero);
-        const F64x4 beyond_x = f64x4_at_most(x_end, x), beyond_y = f64x4_at_most(y_end, y);
-        const F64x4 leaves = f64x4_or(f64x4_or(f64x4_and(behind_x, x_falls), f64x4_and(behind_y, y_falls)),
-                                      f64x4_or(f64x4_and(beyond_x, x_rises), f64x4_and(beyond_y, y_rises)));
-        left = f64x4_and_not(left, leaves);
-        /* not those that are no numbers */
-        const F64x4 in_x = f64x4_and(f64x4_at_most(zero, x), f64x4_less(x, x_end));
-        const F64x4 in_y = f64x4_and(f64x4_at_most(zero, y), f64x4_less(y, y_end));
-        const F64x4 in = f64x4_and(left, f64x4_and(in_x, in_y));
-        const __m128i i = _mm256_cvttpd_epi32(f64x4_and(in, x)), j = _mm256_cvttpd_epi32(f64x4_and(in, y));
-        const __m128i tile = _mm_add_epi32(_mm_mullo_epi32(_mm_srli_epi32(j, side_bits), tiles_x),
-                                           _mm_srli_epi32(i, side_bits));
-        const F64x4 low = f64x4_and_not(in, f64x4_less(floats_at(h->coarse_m, tile, in), z_m));
-        if (f64x4_bits(low)) {
-            const __m128i of = _mm_mask_i32gather_epi32(none, h->tile_of, tile, narrowed(low), 4);
-            const F64x4   some = f64x4_and(low, _mm256_castsi256_pd(_mm256_cvtepi32_epi64(_mm_cmpgt_epi32(of, none))));
-            const __m128i at = _mm_add_epi32(
-                _mm_slli_epi32(of, 2 * side_bits),
-                _mm_add_epi32(_mm_slli_epi32(_mm_and_si128(j, within), side_bits), _mm_and_si128(i, within)));
-            const F64x4 meet = f64x4_and_not(some, f64x4_less(floats_at(h->top_m, at, some), z_m));
-            met |= f64x4_bits(meet);
-            left = f64x4_and_not(left, meet);
+        if (z_m > (double)h->highest_m) return true;
+        double far = side;
+        if (x >= 0 && y >= 0 && x < h->tiles_x * side && y < h->tiles_y * side) {
+            const unsigned i = (unsigned)x, j = (unsigned)y;
+            const unsigned tile = j / side * (unsigned)h->tiles_x + i / side;
+            if (!(z_m > (double)h->coarse_m[tile])) {
+                const size_t at = (size_t)h->tile_of[tile] * cells + (size_t)(j % side * side + i % side);
+                if (h->tile_of[tile] >= 0 && !(z_m > (double)h->top_m[at])) return false;
+                far = 1;
+            }
+        } else if ((x < 0 && way->x <= 0) || (y < 0 && way->y <= 0) || (x >= h->tiles_x * side && way->x >= 0) ||
+                   (y >= h->tiles_y * side && way->y >= 0)) {
+            return true; /* it leaves */
         }
-        const F64x4 far = f64x4_select(low, f64x4_set(1), f64x4_set(side));
-        x += far * f64x4_set(way->x), y += far * f64x4_set(way->y), z_m += far * f64x4_set(way->rise_m);
+        x += far * way->x, y += far * way->y, z_m += far * way->rise_m;
     }
-    return met | f64x4_bits(left);
+    return false;
 }
 
 int scenery_heights_below(int *list, const SceneryHeights *h, const double *const o_enu[3], int count,
@@ -229,15 +197,10 @@ int scenery_heights_below(int *list, const SceneryHeights *h, const double *cons
     /* straight up, the first cell is all that it goes over; steps as long as a cell whatever they rise */
     const Way way = wide > 1e-9 * d_enu[2] ? (Way){d_enu[0] / wide, d_enu[1] / wide, h->cell_m * d_enu[2] / wide}
                                            : (Way){0, 0, 1e9};
-    for (int first = 0; first < count; first += 4) {
-        double at[3][4];
-        for (int k = 0; k < 4; k++)
-            for (int c = 0; c < 3; c++) at[c][k] = o_enu[c][first + k < count ? first + k : count - 1];
-        const F64x4 x = (f64x4_loadu(at[0]) - f64x4_set(h->x0_m)) / f64x4_set(h->cell_m);
-        const F64x4 y = (f64x4_loadu(at[1]) - f64x4_set(h->y0_m)) / f64x4_set(h->cell_m);
-        unsigned    met = meet_tops(h, x, y, f64x4_loadu(at[2]), &way, f64x4_equal(f64x4_set(0), f64x4_set(0)));
-        if (first + 4 > count) met &= (1u << (count - first)) - 1;
-        for (; met; met &= met - 1) list[left++] = first + __builtin_ctz(met);
+    for (int k = 0; k < count; k++) {
+        const double o[3] = {o_enu[0][k], o_enu[1][k], o_enu[2][k]};
+        list[left] = k;
+        left += !passes(h, o, &way);
     }
     return left;
 }

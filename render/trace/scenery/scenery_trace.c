@@ -213,8 +213,8 @@ static void scenery_first(double *range_m, void *found, const TraceBlock *block,
     List                list = {.count = -1};
     Planes              planes;
     uint64_t            asked = 0;
-    const bool by_tree = skips(f->skips_off, SKIP_SCENERY);
-    const uint64_t pairs = (uint64_t)(f->of->drawable + f->of->moving) * (uint64_t)b.count;
+    const bool          by_tree = skips(f->skips_off, SKIP_SCENERY);
+    const uint64_t      pairs = (uint64_t)(f->of->drawable + f->of->moving) * (uint64_t)b.count;
     if (by_tree && scenery_pyramid(&planes, axis, &b, block->limit_m))
         list_objects(&list, f, f->of->tree, f->tree, &planes, axis, b.bent);
     if (list.count == 0) {
@@ -265,24 +265,26 @@ static void complete_hit(Hits *hits, int i, PosedFacet *facet, const SceneryFoun
         hits->material[i] = (uint16_t)t->row[(t->row_first[posed->model] + part) * model_damage_states + posed->damage];
 }
 
-static void fetch_hit(const int *list, int k, int count, const SceneryFound *found, const SceneryFrame *f, bool first)
+/* What hits read is seldom near: all of it is on its way before the first is completed. */
+static void fetch_hits(const int *list, int count, const SceneryFound *found, const SceneryFrame *f, bool first)
 {
-    if (k >= count) return;
-    const PosedEntity *posed = frame_posed(f, (int)found->object[list[k]] - 1);
-    parts_fetch(tracer_model(f->of->tracer, posed->model), found->hit[list[k]].triangle, first);
+    uint32_t last = UINT32_MAX; /* neighbours often meet the same */
+    for (int k = 0; k < count; k++) {
+        const int      i = list[k];
+        const uint32_t triangle = found->hit[i].triangle;
+        if (triangle != last)
+            parts_fetch(tracer_model(f->of->tracer, frame_posed(f, (int)found->object[i] - 1)->model), triangle, first);
+        last = triangle;
+    }
 }
 
 static void scenery_finish(Hits *hits, const int *list, int count, const void *found, const TraceBlock *block,
                            const void *self)
 {
-    enum { ahead = 4 }; /* hits: what they read is seldom near */
-    PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */
-    for (int k = 0; k < 2 * ahead; k++) fetch_hit(list, k, count, found, self, true);
-    for (int k = 0; k < count; k++) {
-        fetch_hit(list, k + 2 * ahead, count, found, self, true);
-        fetch_hit(list, k + ahead, count, found, self, false);
-        complete_hit(hits, list[k], &facet, found, block, self);
-    }
+    PosedFacet facet = {.node = NULL};
+    fetch_hits(list, count, found, self, true);
+    fetch_hits(list, count, found, self, false);
+    for (int k = 0; k < count; k++) complete_hit(hits, list[k], &facet, found, block, self);
 }
 
 /* ---- shadows -------------------------------------------------------------------------------------- */
