@@ -128,6 +128,7 @@ static inline F64x4    f64x4_floor(F64x4 x) { return _mm256_floor_pd(x); }
 static inline F64x4    f64x4_less(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
 static inline F64x4    f64x4_at_most(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
 static inline F64x4    f64x4_equal(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
+static inline F64x4    f64x4_differ(F64x4 a, F64x4 b) { return _mm256_cmp_pd(a, b, _CMP_NEQ_UQ); }
 static inline F64x4    f64x4_and(F64x4 a, F64x4 b) { return _mm256_and_pd(a, b); }
 static inline F64x4    f64x4_or(F64x4 a, F64x4 b) { return _mm256_or_pd(a, b); }
 static inline F64x4    f64x4_and_not(F64x4 a, F64x4 not_b) { return _mm256_andnot_pd(not_b, a); }

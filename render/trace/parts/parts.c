@@ -95,18 +95,6 @@ static void nominate_box(const struct RTCBoundsFunctionArguments *a)
                                       .upper_z = (float)(high[2] - mesh->centre[2] + room_m)};
 }
 
-static void measure_facet(Facet *f, const Model *model, uint32_t triangle)
-{
-    double edge[3][3], normal[3];
-    for (int c = 0; c < 3; c++) v3_scale(f->corner[c], 1, model->vertex[model->triangle[triangle][c]]);
-    for (int c = 0; c < 3; c++) v3_sub(edge[c], f->corner[(c + 1) % 3], f->corner[c]);
-    v3_cross(normal, edge[0], edge[1]);
-    for (int c = 0; c < 3; c++) {
-        const double side_m = v3_length(edge[c]);
-        f->height_m[c] = side_m > 0 ? (float)(v3_length(normal) / side_m) : 0;
-    }
-}
-
 /* Brings to the front the vertices that lie outermost along the axes, edges and diagonals of a cube: few others lie
  * outermost in an image. */
 static void outermost_first(NodeMesh *mesh)
@@ -185,14 +173,12 @@ static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *mesh
     mesh->damage_hidden = hidden;
     mesh->triangle_count = triangle_count;
     mesh->triangle = calloc((size_t)triangle_count, sizeof *mesh->triangle);
-    mesh->facet = calloc((size_t)triangle_count, sizeof *mesh->facet);
-    if (!mesh->triangle || !mesh->facet) return STATUS_NO_MEMORY;
+    if (!mesh->triangle) return STATUS_NO_MEMORY;
     int at = 0;
     for (int t = 0; t < model->triangle_count; t++) {
         const ModelPart *part = &model->part[model->triangle_part[t]];
         if (part->node == node && hidden_group(part) == hidden_group_of(hidden)) mesh->triangle[at++] = (uint32_t)t;
     }
-    for (int t = 0; t < triangle_count; t++) measure_facet(&mesh->facet[t], model, mesh->triangle[t]);
     if (parts_list_patches(mesh) != STATUS_OK || list_corners(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
     if (tracer->thin && parts_list_thin(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
     bound_mesh(mesh);
@@ -228,7 +214,6 @@ static void close_model(ModelMeshes *meshes)
     for (int k = 0; k < meshes->count; k++) {
         if (meshes->mesh[k].scene) rtcReleaseScene(meshes->mesh[k].scene);
         free(meshes->mesh[k].triangle);
-        free(meshes->mesh[k].facet);
         free(meshes->mesh[k].patch);
         free(meshes->mesh[k].corner);
         free(meshes->mesh[k].thin);
@@ -359,9 +344,11 @@ int parts_largest_node(const PosedEntity *entity)
     return largest;
 }
 
-const double (*parts_node_triangle(const PosedNode *node, int k))[3]
+bool parts_node_triangle(double corner[3][3], const PosedNode *node, int k)
 {
-    return k < node->mesh->triangle_count ? (const double(*)[3])node->mesh->facet[k].corner : NULL;
+    if (k >= node->mesh->triangle_count) return false;
+    for (int c = 0; c < 3; c++) memcpy(corner[c], parts_corner(node->mesh, k, c), sizeof corner[c]);
+    return true;
 }
 
 /* ---- posing ------------------------------------------------------------------------------- */

@@ -75,8 +75,8 @@ int parts_largest_node(const PosedEntity *entity);
 /* Low and high corner of a box in its axes about its patch number k (a triangle, or neighbours with much the same box);
  * low above high: none of it has an area. False: k is out of range. */
 bool parts_node_patch(double box[2][3], const PosedNode *node, int k);
-/* The three corners of its triangle number k, in its axes; NULL: k is out of range. */
-const double (*parts_node_triangle(const PosedNode *node, int k))[3];
+/* The three corners of its triangle number k, in its axes. False: k is out of range. */
+bool parts_node_triangle(double corner[3][3], const PosedNode *node, int k);
 
 /* Number of nodes that posing an entity of this model needs memory for, at most. */
 int parts_node_count(const Tracer *tracer, int model);
@@ -120,6 +120,21 @@ typedef struct PosedFacet {
     double           even_enu[3];                          /* unit */
 } PosedFacet;
 
+/* Fetches into the cache what parts_facet reads of a triangle of the model: first its indices, later what they lead to.
+ */
+static inline void parts_fetch(const Model *model, uint32_t triangle, bool first)
+{
+    const uint32_t *index = model->triangle[triangle];
+    if (first) {
+        __builtin_prefetch(index);
+        __builtin_prefetch(&model->triangle_part[triangle]);
+        return;
+    }
+    for (int c = 0; c < 3; c++) {
+        __builtin_prefetch(model->vertex[index[c]]);
+        __builtin_prefetch(model->normal[index[c]]);
+    }
+}
 void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entity, const PartHit *hit);
 /* Unit normals at a distance along the ray, on the ray's side: of the triangle, and interpolated. */
 void parts_facet_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedFacet *facet,

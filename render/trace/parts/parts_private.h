@@ -7,11 +7,16 @@
 
 #include "render/trace/parts/parts.h"
 
-/* A triangle in the form of the exact test. */
-typedef struct Facet {
-    double corner[3][3]; /* node axes */
-    float  height_m[3];  /* over the side from corner c to the next */
-} Facet;
+enum { patch_corners = 4, patch_most = 2 };
+
+/* One or two triangles in the form of the exact test, which share one of Embree's boxes: two have a side in common.
+ * Two lines of a cache. */
+typedef struct Patch {
+    double   corner[patch_corners][3]; /* node axes; the first triangle's, and the second's fourth */
+    float    height_m[patch_most][3];  /* over the side from corner c to the next */
+    uint32_t triangle;                 /* of the model: the first; the second is the next */
+    uint8_t  count, second[3];         /* triangles; corners of the second */
+} __attribute__((aligned(64))) Patch;
 
 struct NodeMesh {
     const Model *model;
@@ -20,9 +25,8 @@ struct NodeMesh {
     RTCScene     scene;         /* of its patches' boxes, with margin, about `centre` */
     int          triangle_count;
     uint32_t    *triangle; /* of the model, ascending */
-    Facet       *facet;    /* in the same order */
     int          patch_count;
-    uint32_t    *patch; /* [patch_count + 1]: first facet of each; facets of a patch share one of Embree's boxes */
+    Patch       *patch; /* in the same order */
     int          corner_count;
     double (*corner)[3];   /* every vertex of its triangles, once; the outermost first */
     double (*block)[2][3]; /* of every parts_block_corners of them: low and high, with margin */
@@ -33,7 +37,13 @@ struct NodeMesh {
     ThinBox *thin;
 };
 
-/* Sets patch and patch_count, of facets that are there (parts_patches.c). */
+/* Corner c of its triangle number t, in its axes. */
+static inline const double *parts_corner(const NodeMesh *mesh, int t, int c)
+{
+    return mesh->model->vertex[mesh->model->triangle[mesh->triangle[t]][c]];
+}
+
+/* Sets patch and patch_count (parts_patches.c). */
 Status parts_list_patches(NodeMesh *mesh);
 /* A box about a patch, node axes; low above high: none of its facets has an area. */
 void parts_bound_patch(double low[3], double high[3], const NodeMesh *mesh, uint32_t patch);

@@ -49,7 +49,7 @@ static void to_node(NodeRays *r, const Chunk *chunk, const PosedNode *node, bool
         f64x4_store(r->length_m + i, ask_all ? f64x4_max(length_m, radius_m) : length_m);
         const F64x4 meets =
             f64x4_and(f64x4_and(f64x4_less(zero, left), f64x4_less(zero, length_m)),
-                      f64x4_and(f64x4_less(start_m, f64x4_load(chunk->best_m + i)), f64x4_at_most(in, out)));
+                      f64x4_and(f64x4_less(start_m + in, f64x4_load(chunk->best_m + i)), f64x4_at_most(in, out)));
         r->meets[i / 4] = ask_all ? in_embree(at, d) : f64x4_bits(meets);
     }
 }
@@ -60,21 +60,33 @@ typedef struct Bundle {
     double axis[3], sine, cosine; /* and stay within this angle; cosine 0: nothing in common */
 } Bundle;
 
+/* Whether its rays leave one point, or go one way. */
+static void alike(bool *one_point, bool *one_way, const Chunk *chunk)
+{
+    F64x4 point = f64x4_set(0), way = point; /* bits that differ; lanes without a ray repeat the last one */
+    for (int c = 0; c < 3; c++) {
+        const F64x4 o = f64x4_set(chunk->o[c][0]), d = f64x4_set(chunk->d[c][0]);
+        for (int i = 0; i < chunk->count; i += 4) {
+            point = f64x4_or(point, f64x4_differ(f64x4_load(chunk->o[c] + i), o));
+            way = f64x4_or(way, f64x4_differ(f64x4_load(chunk->d[c] + i), d));
+        }
+    }
+    *one_point = f64x4_bits(point) == 0;
+    *one_way = f64x4_bits(way) == 0;
+}
+
 static Bundle bundle_of(const Chunk *chunk)
 {
     Bundle b = {.cosine = 1};
-    bool   one_point = true, one_way = true;
-    for (int i = 1; i < chunk->count; i++)
-        for (int c = 0; c < 3; c++) {
-            one_point &= chunk->o[c][i] == chunk->o[c][0];
-            one_way &= chunk->d[c][i] == chunk->d[c][0];
-        }
+    bool   one_point, one_way;
+    alike(&one_point, &one_way, chunk);
+    if (!one_point && !one_way) return (Bundle){.cosine = 0};
     for (int i = 0; i < chunk->count; i++)
         for (int c = 0; c < 3; c++) {
             b.origin[c] += chunk->o[c][i] / chunk->count;
             b.axis[c] += chunk->d[c][i];
         }
-    if ((!one_point && !one_way) || !v3_normalize(b.axis, b.axis)) return (Bundle){.cosine = 0};
+    if (!v3_normalize(b.axis, b.axis)) return (Bundle){.cosine = 0};
     double farthest = 0;
     for (int i = 0; i < chunk->count; i++) {
         double from[3], square = 0, cosine = 0;
@@ -146,7 +158,7 @@ static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *co
     }
     chunk->count = count;
     fill_up(chunk);
-    if (ask_all) return;
+    if (ask_all || entity->node_count == 1) return; /* the node's box is much the same */
     const Vector low = set3(entity->box_low), high = set3(entity->box_high);
     int          kept = 0;
     for (int i = 0; i < count; i += 4) {
@@ -181,9 +193,11 @@ static uint64_t first_hits(double *range_m, PartHit *hit, const PosedEntity *ent
         take_chunk(&chunk, entity, o, d, far_m, list + first, count - first < chunk_rays ? count - first : chunk_rays,
                    ask_all);
         if (chunk.count == 0) continue;
-        const Bundle bundle = ask_all ? (Bundle){.cosine = 0} : bundle_of(&chunk);
+        const Bundle bundle = ask_all || entity->node_count == 1 ? (Bundle){.cosine = 0} : bundle_of(&chunk);
+        bool         one_point = true, one_way = true;
+        if (!ask_all && !(bundle.cosine > 0)) alike(&one_point, &one_way, &chunk);
         /* rays with nothing in common take separate ways through a node's tree: one by one they cost less */
-        const bool one_by_one = alone || (!ask_all && !(bundle.cosine > 0));
+        const bool one_by_one = alone || !(one_point || one_way);
         for (int k = 0; k < entity->node_count; k++) {
             const PosedNode *node = &entity->node[k];
             if (entity->node_count > 1 && !bundle_may_meet(&bundle, node)) continue;

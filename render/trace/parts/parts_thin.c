@@ -51,7 +51,7 @@ static void find_pieces(Member *member, Corner *corner, const NodeMesh *mesh)
     const int triangles = mesh->triangle_count, corners = 3 * triangles;
     for (int t = 0; t < triangles; t++) {
         member[t] = (Member){t, t};
-        for (int c = 0; c < 3; c++) corner[3 * t + c] = (Corner){mesh->facet[t].corner[c], t};
+        for (int c = 0; c < 3; c++) corner[3 * t + c] = (Corner){parts_corner(mesh, t, c), t};
     }
     qsort(corner, (size_t)corners, sizeof *corner, by_place);
     for (int k = 1; k < corners; k++)
@@ -70,7 +70,7 @@ static double farthest(double out[3], const double from[3], const NodeMesh *mesh
     double most = -1;
     for (int k = 0; k < 3 * count; k++) {
         double d[3];
-        v3_sub(d, mesh->facet[piece[k / 3].triangle].corner[k % 3], from);
+        v3_sub(d, parts_corner(mesh, piece[k / 3].triangle, k % 3), from);
         for (int a = 0; a < axes; a++) v3_add_scaled(d, d, -v3_dot(d, box->axis[a]), box->axis[a]);
         if (v3_dot(d, d) <= most) continue;
         most = v3_dot(d, d);
@@ -84,7 +84,7 @@ static double farthest(double out[3], const double from[3], const NodeMesh *mesh
 static bool bound_piece(ThinBox *box, const NodeMesh *mesh, const Member *piece, int count)
 {
     double at[3], d[3], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    memcpy(at, mesh->facet[piece->triangle].corner[0], sizeof at);
+    memcpy(at, parts_corner(mesh, piece->triangle, 0), sizeof at);
     for (int axis = 0; axis < 2; axis++) { /* to one end, and from it to the other */
         farthest(d, at, mesh, piece, count, box, axis);
         v3_add(at, at, d);
@@ -94,7 +94,7 @@ static bool bound_piece(ThinBox *box, const NodeMesh *mesh, const Member *piece,
     v3_cross(box->axis[2], box->axis[0], box->axis[1]);
     for (int k = 0; k < 3 * count; k++)
         for (int a = 0; a < 3; a++) {
-            const double x = v3_dot(mesh->facet[piece[k / 3].triangle].corner[k % 3], box->axis[a]);
+            const double x = v3_dot(parts_corner(mesh, piece[k / 3].triangle, k % 3), box->axis[a]);
             low[a] = x < low[a] ? x : low[a];
             high[a] = x > high[a] ? x : high[a];
         }

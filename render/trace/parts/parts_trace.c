@@ -16,41 +16,62 @@ static const double slack_m = 2e-3;    /* search distance beyond the nearest hit
 
 /* ---- candidates and the exact test ------------------------------------------------------------ */
 
-/* For four lanes at a time, as requested. */
+/* Of a triangle, for four lanes. */
 typedef struct Verdict {
-    double at_m[lanes]; /* where near: distance to the plane, clamped between the corners: edge-on it is
-                         * undefined */
-    unsigned judged;    /* 1 << lane / 4 */
-    unsigned near[lanes / 4], through[lanes / 4]; /* 1 << lane % 4: passed by within same_edge_m, ahead; and through */
+    double   at_m[4]; /* where near: distance to the plane, clamped between the corners: edge-on it is undefined */
+    unsigned near, through; /* 1 << lane % 4: passed by within same_edge_m, ahead; and through */
 } __attribute__((aligned(64))) Verdict;
 
 /* Neighbours compute the same number with the opposite sign for their common side, whatever the rounding, so no ray
- * passes between them. */
-static void judge(Verdict *v, const Packet *p, const Facet *facet, int four)
+ * passes between them. a, b, c: corners from the rays' origins. */
+static inline void judge(Verdict *v, Vector a, Vector b, Vector c, Vector d, const float height_m[3])
 {
-    const int    l = 4 * four;
-    const Vector o = load3(p->o[0] + l, p->o[1] + l, p->o[2] + l), d = load3(p->d[0] + l, p->d[1] + l, p->d[2] + l);
-    const Vector a = sub(set3(facet->corner[0]), o), b = sub(set3(facet->corner[1]), o),
-                 c = sub(set3(facet->corner[2]), o);
     const F64x4 ab = dot(cross(a, b), d), bc = dot(cross(b, c), d), ca = dot(cross(c, a), d);
     const F64x4 whole = ab + bc + ca, share = f64x4_set(1) / whole;
-    const F64x4 inside_m = f64x4_min(ab * share * f64x4_set((double)facet->height_m[0]),
-                                     f64x4_min(bc * share * f64x4_set((double)facet->height_m[1]),
-                                               ca * share * f64x4_set((double)facet->height_m[2])));
+    const F64x4 inside_m =
+        f64x4_min(ab * share * f64x4_set((double)height_m[0]),
+                  f64x4_min(bc * share * f64x4_set((double)height_m[1]), ca * share * f64x4_set((double)height_m[2])));
     const F64x4 seen = _mm256_cmp_pd(whole, f64x4_set(0), _CMP_NEQ_OQ); /* not edge-on */
     const F64x4 near = f64x4_and(seen, f64x4_at_most(f64x4_set(-same_edge_m), inside_m));
-    v->judged |= 1u << four;
-    v->near[four] = f64x4_bits(near);
-    if (v->near[four] == 0) return;
+    v->near = v->through = f64x4_bits(near);
+    if (v->near == 0) return;
     const Vector n = cross(sub(b, a), sub(c, a));
     const F64x4  at_a = dot(a, d), at_b = dot(b, d), at_c = dot(c, d);
     const F64x4  low = f64x4_min(at_a, f64x4_min(at_b, at_c)), high = f64x4_max(at_a, f64x4_max(at_b, at_c));
     const F64x4  t = dot(n, a) / dot(n, d);
     const F64x4  at_m = f64x4_select(f64x4_at_most(low, t), f64x4_min(t, high), low); /* and when t is not a number */
     const F64x4  ahead = f64x4_at_most(f64x4_set(0), at_m);
-    f64x4_store(v->at_m + l, at_m);
-    v->near[four] = f64x4_bits(f64x4_and(near, ahead));
-    v->through[four] = v->near[four] & f64x4_bits(f64x4_at_most(f64x4_set(through_m), inside_m));
+    f64x4_store(v->at_m, at_m);
+    v->near = f64x4_bits(f64x4_and(near, ahead));
+    v->through = v->near & f64x4_bits(f64x4_at_most(f64x4_set(through_m), inside_m));
+}
+
+static void judge_patch(Verdict v[patch_most], const Packet *p, const Patch *patch, int four)
+{
+    const int    l = 4 * four;
+    const Vector o = load3(p->o[0] + l, p->o[1] + l, p->o[2] + l), d = load3(p->d[0] + l, p->d[1] + l, p->d[2] + l);
+    Vector       to[patch_corners];
+    for (int c = 0; c < patch_corners; c++) to[c] = sub(set3(patch->corner[c]), o);
+    judge(&v[0], to[0], to[1], to[2], d, patch->height_m[0]);
+    if (patch->count < 2) return;
+    judge(&v[1], to[patch->second[0]], to[patch->second[1]], to[patch->second[2]], d, patch->height_m[1]);
+}
+
+/* The lanes that Embree asks for, 1 << lane, and where each stands among its rays: they may stand in any order. */
+static unsigned asked_lanes(uint8_t place[lanes], const int *valid, const uint32_t *id, unsigned n)
+{
+    unsigned asked = 0;
+    for (unsigned first = 0; first < n; first += 8) {
+        unsigned some = 0;
+        if (n - first >= 8) some = f32x8_bits(_mm256_loadu_ps((const float *)valid + first));
+        for (unsigned k = first; k < n && n - first < 8; k++) some |= (unsigned)(valid[k] != 0) << (k - first);
+        for (; some; some &= some - 1) {
+            const unsigned k = first + (unsigned)__builtin_ctz(some);
+            asked |= 1u << id[k];
+            place[id[k]] = (uint8_t)k;
+        }
+    }
+    return asked;
 }
 
 static void keep_tie(Packet *p, int lane, uint32_t triangle, double at_m)
@@ -84,63 +105,63 @@ static void offer_lowest(Packet *p, int lane, uint32_t triangle, double at_m)
     p->lowest_m[lane] = at_m;
 }
 
-static inline void intersect_facet(const struct RTCIntersectFunctionNArguments *a, Packet *p, uint32_t facet)
+/* A triangle that a lane passes near; end_m: Embree's limit. */
+static inline void offer(Packet *p, int lane, uint32_t triangle, double at_m, bool through, float *end_m)
 {
-    const unsigned  n = a->N;
-    float          *end_m = (float *)a->rayhit + 8 * n;
-    const uint32_t *id = (const uint32_t *)a->rayhit + 10 * n;
-    Verdict         v;
-    v.judged = 0;
-    for (unsigned k = 0; k < n; k++) {
-        if (!a->valid[k]) continue;
-        const int lane = (int)id[k], four = lane / 4, bit = lane % 4;
-        if (!(v.judged >> four & 1)) judge(&v, p, &p->mesh->facet[facet], four);
-        if (!(v.near[four] >> bit & 1)) continue;
-        const double at_m = v.at_m[lane];
-        if (p->lowest_only) {
-            offer_lowest(p, lane, facet, at_m);
-            continue;
-        }
-        if (!(at_m <= p->nearest_m[lane] + same_range_m)) continue;
-        if (v.through[four] >> bit & 1 && at_m < p->nearest_m[lane]) {
-            bring_nearer(p, lane, facet, at_m);
-            const float stop_m = (float)(at_m + slack_m);
-            if (stop_m < p->end_m[lane]) end_m[k] = p->end_m[lane] = stop_m;
-        }
-        keep_tie(p, lane, facet, at_m);
+    if (p->lowest_only) {
+        offer_lowest(p, lane, triangle, at_m);
+        return;
     }
+    if (!(at_m <= p->nearest_m[lane] + same_range_m)) return;
+    if (through && at_m < p->nearest_m[lane]) {
+        bring_nearer(p, lane, triangle, at_m);
+        const float stop_m = (float)(at_m + slack_m);
+        if (stop_m < p->end_m[lane]) *end_m = p->end_m[lane] = stop_m;
+    }
+    keep_tie(p, lane, triangle, at_m);
 }
 
-/* Fields of N rays lie one after another (rtcore_ray.h), and they may stand in any order. */
+/* Fields of N rays lie one after another (rtcore_ray.h). */
 void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
 {
-    Packet         *p = (Packet *)a->context;
-    const uint32_t *patch = p->mesh->patch + a->primID;
-    for (uint32_t facet = patch[0]; facet < patch[1]; facet++) intersect_facet(a, p, facet);
-}
-
-static inline void occlude_facet(const struct RTCOccludedFunctionNArguments *a, Packet *p, uint32_t facet)
-{
-    const unsigned  n = a->N;
-    float          *end_m = (float *)a->ray + 8 * n;
-    const uint32_t *id = (const uint32_t *)a->ray + 10 * n;
-    Verdict         v;
-    v.judged = 0;
-    for (unsigned k = 0; k < n; k++) {
-        if (!a->valid[k]) continue;
-        const int lane = (int)id[k], four = lane / 4;
-        if (!(v.judged >> four & 1)) judge(&v, p, &p->mesh->facet[facet], four);
-        if (!(v.near[four] & v.through[four] & 1u << lane % 4 && v.at_m[lane] < p->far_m[lane])) continue;
-        end_m[k] = -INFINITY;
-        p->nearest_m[lane] = 0; /* met */
+    Packet        *p = (Packet *)a->context;
+    const Patch   *patch = &p->mesh->patch[a->primID];
+    float         *end_m = (float *)a->rayhit + 8 * a->N;
+    uint8_t        place[lanes];
+    const unsigned asked = asked_lanes(place, a->valid, (const uint32_t *)a->rayhit + 10 * a->N, a->N);
+    for (int four = 0; four < lanes / 4; four++) {
+        const unsigned of = asked >> 4 * four & 15;
+        Verdict        v[patch_most];
+        if (of == 0) continue;
+        judge_patch(v, p, patch, four);
+        for (unsigned f = 0; f < patch->count; f++)
+            for (unsigned left = v[f].near & of; left; left &= left - 1) {
+                const int bit = __builtin_ctz(left), lane = 4 * four + bit;
+                offer(p, lane, patch->triangle + f, v[f].at_m[bit], v[f].through >> bit & 1, &end_m[place[lane]]);
+            }
     }
 }
 
 void parts_occlude(const struct RTCOccludedFunctionNArguments *a)
 {
-    Packet         *p = (Packet *)a->context;
-    const uint32_t *patch = p->mesh->patch + a->primID;
-    for (uint32_t facet = patch[0]; facet < patch[1]; facet++) occlude_facet(a, p, facet);
+    Packet        *p = (Packet *)a->context;
+    const Patch   *patch = &p->mesh->patch[a->primID];
+    float         *end_m = (float *)a->ray + 8 * a->N;
+    uint8_t        place[lanes];
+    const unsigned asked = asked_lanes(place, a->valid, (const uint32_t *)a->ray + 10 * a->N, a->N);
+    for (int four = 0; four < lanes / 4; four++) {
+        const unsigned of = asked >> 4 * four & 15;
+        Verdict        v[patch_most];
+        if (of == 0) continue;
+        judge_patch(v, p, patch, four);
+        for (unsigned f = 0; f < patch->count; f++)
+            for (unsigned left = v[f].through & of; left; left &= left - 1) {
+                const int bit = __builtin_ctz(left), lane = 4 * four + bit;
+                if (!(v[f].at_m[bit] < p->far_m[lane])) continue;
+                end_m[place[lane]] = -INFINITY;
+                p->nearest_m[lane] = 0; /* met */
+            }
+    }
 }
 
 /* ---- queries ------------------------------------------------------------------------------------ */
@@ -197,7 +218,7 @@ static double settle(uint32_t *triangle, Packet *p, const struct RTCRay16 *rays,
     for (int k = 0; k < p->ties[l]; k++) offer_lowest(p, l, p->tie[l][k], p->tie_m[l][k]);
     /* it is among those stored, unless the second pass found less than the first: then it is the result */
     offer_lowest(p, l, p->nearest[l], nearest_m);
-    *triangle = p->mesh->triangle[p->lowest[l]];
+    *triangle = p->lowest[l];
     return p->lowest_m[l];
 }
 

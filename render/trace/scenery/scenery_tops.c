@@ -54,8 +54,8 @@ static void raise_triangle(const Grid *g, const Cells *in, const double p[3][3])
 static void raise_node(const Grid *g, const PosedNode *node)
 {
     const double *r = node->r_enu_from_node;
-    const double(*corner)[3];
-    for (int k = 0; (corner = parts_node_triangle(node, k)); k++) {
+    double        corner[3][3];
+    for (int k = 0; parts_node_triangle(corner, node, k); k++) {
         double p[3][3];
         Cells  in;
         bool   some = true;

@@ -1,9 +1,9 @@
 /* render/trace/scenery/scenery_trace.c: scenery among what rays can meet: first hits and shadows. */
+#include "render/trace/scenery/scenery_planes_private.h"
 #include "render/trace/scenery/scenery_tracer_private.h"
 #include "render/trace/visibility/trace_entry.h"
 
 /* Not fmin and fmax, which compile to calls. */
-static inline double smaller(double a, double b) { return a < b ? a : b; }
 static inline double larger(double a, double b) { return a > b ? a : b; }
 
 enum {
@@ -15,13 +15,6 @@ typedef struct SceneryFound {
     uint32_t object[hits_capacity]; /* index + 1; 0: none */
     PartHit  hit[hits_capacity];
 } SceneryFound;
-
-/* Rays of a block, or towards the sun, as these functions take them. */
-typedef struct Bundle {
-    const double *const *o, *const *d; /* [3][count] */
-    int  count, columns;
-    bool bent;
-} Bundle;
 
 static const PosedEntity *crowd_posed(const void *f, int object) { return frame_posed(f, object); }
 static double             crowd_lift_m(const void *f, int object) { return frame_lift_m(f, object); }
@@ -36,91 +29,6 @@ static Crowd crowd_of(const SceneryFrame *f, const BroadPhase *tree, bool bent)
                    .lift_m = raises(f, bent) ? crowd_lift_m : NULL,
                    .self = f,
                    .ask_all = !skips(f->skips_off, SKIP_PART)};
-}
-
-/* ---- what a block may meet ------------------------------------------------------------------------ */
-
-typedef struct Planes {
-    double plane[6][4];
-    int    count;
-} Planes;
-
-static void add_plane(Planes *to, double x, double y, double z, const double at[3], double margin_m)
-{
-    const double length = sqrt(x * x + y * y + z * z);
-    double      *plane = to->plane[to->count++];
-    plane[0] = x / length, plane[1] = y / length, plane[2] = z / length;
-    plane[3] = v3_dot(plane, at) - margin_m;
-}
-
-static void across(double u[3], double v[3], const double axis[3])
-{
-    const int    least = fabs(axis[0]) < fabs(axis[1]) ? (fabs(axis[0]) < fabs(axis[2]) ? 0 : 2)
-                                                       : (fabs(axis[1]) < fabs(axis[2]) ? 1 : 2);
-    const double side[3] = {least == 0, least == 1, least == 2};
-    v3_cross(u, axis, side);
-    if (!v3_normalize(u, u)) u[0] = 1, u[1] = u[2] = 0;
-    v3_cross(v, axis, u);
-}
-
-/* A pyramid about rays that leave one point, up to the farthest limit; false: they leave several, or go all ways. */
-static bool pyramid_of(Planes *out, double axis[3], const Bundle *b, const double *limit_m)
-{
-    static const double margin_m = 1e-3, slope_margin = 1e-9;
-    const double        eye[3] = {b->o[0][0], b->o[1][0], b->o[2][0]};
-    double              u[3], v[3], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    double              far_m = 0;
-    bool                one_point = true;
-    axis[0] = axis[1] = axis[2] = 0;
-    for (int i = 0; i < b->count; i++)
-        for (int c = 0; c < 3; c++) one_point &= b->o[c][i] == eye[c], axis[c] += b->d[c][i];
-    if (!one_point || !v3_normalize(axis, axis)) return false;
-    across(u, v, axis);
-    for (int i = 0; i < b->count; i++) {
-        const double d[3] = {b->d[0][i], b->d[1][i], b->d[2][i]}, along = v3_dot(d, axis);
-        if (!(along > 0.1)) return false;
-        const double slope[2] = {v3_dot(d, u) / along, v3_dot(d, v) / along};
-        for (int k = 0; k < 2; k++) low[k] = smaller(low[k], slope[k]), high[k] = larger(high[k], slope[k]);
-        far_m = larger(far_m, limit_m[i]);
-    }
-    out->count = 0;
-    add_plane(out, axis[0], axis[1], axis[2], eye, margin_m);
-    for (int k = 0; k < 2; k++) {
-        const double *side = k ? v : u, l = low[k] - slope_margin, h = high[k] + slope_margin;
-        add_plane(out, side[0] - l * axis[0], side[1] - l * axis[1], side[2] - l * axis[2], eye, margin_m);
-        add_plane(out, h * axis[0] - side[0], h * axis[1] - side[1], h * axis[2] - side[2], eye, margin_m);
-    }
-    if (far_m < INFINITY) {
-        double end[3];
-        v3_add_scaled(end, eye, far_m, axis);
-        add_plane(out, -axis[0], -axis[1], -axis[2], end, margin_m);
-    }
-    return true;
-}
-
-/* A prism about rays in one direction. */
-static void prism_of(Planes *out, const Bundle *b, const double way[3])
-{
-    static const double margin_m = 1e-3;
-    double side[3][3], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    memcpy(side[2], way, sizeof side[2]);
-    across(side[0], side[1], way);
-    for (int i = 0; i < b->count; i++) {
-        const double o[3] = {b->o[0][i], b->o[1][i], b->o[2][i]};
-        for (int k = 0; k < 3; k++) {
-            const double at = v3_dot(o, side[k]);
-            low[k] = smaller(low[k], at), high[k] = larger(high[k], at);
-        }
-    }
-    out->count = 0;
-    for (int k = 0; k < 3; k++) {
-        double at[3];
-        v3_scale(at, low[k], side[k]);
-        add_plane(out, side[k][0], side[k][1], side[k][2], at, margin_m + 1e-9 * fabs(low[k]));
-        if (k == 2) break;
-        v3_scale(at, high[k], side[k]);
-        add_plane(out, -side[k][0], -side[k][1], -side[k][2], at, margin_m + 1e-9 * fabs(high[k]));
-    }
 }
 
 /* ---- objects that a block may meet -------------------------------------------------------------- */
@@ -253,7 +161,7 @@ static uint64_t meet_listed(Run *r, const SceneryFrame *f, const List *list, boo
     Planes       planes;
     double       axis[3];
     uint64_t     asked = 0;
-    if (list->count > 2 && !pyramid_of(&planes, axis, &b, r->limit_m)) planes.count = 0;
+    if (list->count > 2 && !scenery_pyramid(&planes, axis, &b, r->limit_m)) planes.count = 0;
     const double start_m = v3_dot((const double[3]){r->o[0][0], r->o[1][0], r->o[2][0]}, list->axis);
     for (int n = 0; n < list->count; n++) {
         double far_m = 0;
@@ -305,12 +213,18 @@ static void scenery_first(double *range_m, void *found, const TraceBlock *block,
     List                list = {.count = -1};
     Planes              planes;
     uint64_t            asked = 0;
+    const bool          by_tree = skips(f->skips_off, SKIP_SCENERY);
+    const uint64_t      pairs = (uint64_t)(f->of->drawable + f->of->moving) * (uint64_t)b.count;
+    if (by_tree && scenery_pyramid(&planes, axis, &b, block->limit_m))
+        list_objects(&list, f, f->of->tree, f->tree, &planes, axis, b.bent);
+    if (list.count == 0) {
+        for (int i = 0; i < b.count; i++) range_m[i] = INFINITY;
+        block->counters->skipped[SKIP_SCENERY] += pairs;
+        return;
+    }
     memcpy(limit_m, block->limit_m, (size_t)b.count * sizeof *limit_m);
     memset(of->object, 0, (size_t)b.count * sizeof *of->object);
-    const bool by_tree = skips(f->skips_off, SKIP_SCENERY);
-    if (by_tree && pyramid_of(&planes, axis, &b, limit_m))
-        list_objects(&list, f, f->of->tree, f->tree, &planes, axis, b.bent);
-    if (list.count != 0) order_rays(order, b.count, b.columns);
+    order_rays(order, b.count, b.columns);
     if (list.count > 0 || !by_tree)
         asked += meet_by_runs(limit_m, of, f, by_tree ? &list : NULL, &b, order, block->counters);
     if (by_tree && list.count < 0) {
@@ -319,7 +233,7 @@ static void scenery_first(double *range_m, void *found, const TraceBlock *block,
     }
     for (int i = 0; i < b.count; i++) range_m[i] = of->object[i] ? limit_m[i] : INFINITY;
     block->counters->rays_scenery += asked;
-    block->counters->skipped[SKIP_SCENERY] += (uint64_t)(f->of->drawable + f->of->moving) * (uint64_t)b.count - asked;
+    block->counters->skipped[SKIP_SCENERY] += pairs - asked;
 }
 
 /* facet: of the hit completed before, and of this one after. */
@@ -351,10 +265,25 @@ static void complete_hit(Hits *hits, int i, PosedFacet *facet, const SceneryFoun
         hits->material[i] = (uint16_t)t->row[(t->row_first[posed->model] + part) * model_damage_states + posed->damage];
 }
 
+/* What hits read is seldom near: all of it is on its way before the first is completed. */
+static void fetch_hits(const int *list, int count, const SceneryFound *found, const SceneryFrame *f, bool first)
+{
+    uint32_t last = UINT32_MAX; /* neighbours often meet the same */
+    for (int k = 0; k < count; k++) {
+        const int      i = list[k];
+        const uint32_t triangle = found->hit[i].triangle;
+        if (triangle != last)
+            parts_fetch(tracer_model(f->of->tracer, frame_posed(f, (int)found->object[i] - 1)->model), triangle, first);
+        last = triangle;
+    }
+}
+
 static void scenery_finish(Hits *hits, const int *list, int count, const void *found, const TraceBlock *block,
                            const void *self)
 {
-    PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */
+    PosedFacet facet = {.node = NULL};
+    fetch_hits(list, count, found, self, true);
+    fetch_hits(list, count, found, self, false);
     for (int k = 0; k < count; k++) complete_hit(hits, list[k], &facet, found, block, self);
 }
 
@@ -390,7 +319,7 @@ static uint64_t shade_by_runs(uint8_t *dark, const SceneryFrame *f, const List *
         Planes planes;
         take_run(&run, b, NULL, first, NULL);
         const Bundle of = bundle_of(&run, false);
-        if (list && list->count > 2) prism_of(&planes, &of, way);
+        if (list && list->count > 2) scenery_prism(&planes, &of, way);
         for (int n = 0; list && n < list->count; n++)
             if (list->count <= 2 || box_within(&list->of[n], &planes))
                 asked += shade_by_object(&run, f, list->of[n].object, counters);
@@ -428,7 +357,7 @@ static uint64_t shade_by_tree(uint8_t *dark, const SceneryFrame *f, const BroadP
     if (!tree) {
         asked = shade_by_runs(met, f, NULL, b, way, counters);
     } else {
-        prism_of(&planes, b, way);
+        scenery_prism(&planes, b, way);
         list_objects(&list, f, tree, NULL, &planes, way, false);
         if (list.count == 0) return 0;
         asked =

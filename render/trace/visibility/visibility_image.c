@@ -129,13 +129,12 @@ static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, dou
 {
     for (int k = 0; k < entity->node_count; k++) {
         const PosedNode *node = &entity->node[k];
-        const double(*triangle)[3];
-        double r_cam_from_node[9], from_eye[3], p_cam[3], corner[3][3];
+        double           r_cam_from_node[9], from_eye[3], p_cam[3], triangle[3][3], corner[3][3];
         m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
         v3_sub(from_eye, node->p_enu, view->p_enu);
         from_eye[2] += lift_m;
         m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
-        for (int n = 0; (triangle = parts_node_triangle(node, n)); n++) {
+        for (int n = 0; parts_node_triangle(triangle, node, n); n++) {
             for (int c = 0; c < 3; c++) {
                 m3_mul_v3(corner[c], r_cam_from_node, triangle[c]);
                 v3_add(corner[c], corner[c], p_cam);
