@@ -11,12 +11,7 @@ build=${1:?usage: bash $0 BUILD_FOLDER}
 pitviper=$build/pitviper
 [ -x "$pitviper" ] || { echo "skipped: no $pitviper"; exit 77; }
 tmp=$(mktemp -d) || exit 1
-# Nothing of the user's. What runs keep is named by all that it follows from, the build included, so that scripts share it: a world
-# is made once, by the first that needs it. Those whose subject is how it is made, in which memory or by which threads, begin with
-# none: empty_cache.
-export XDG_CACHE_HOME=$build/tests/cache
-mkdir -p "$XDG_CACHE_HOME"
-empty_cache() { export XDG_CACHE_HOME=$tmp/cache; }
+export XDG_CACHE_HOME=$tmp/cache # nothing of the user's, and empty
 # also what it has in the background ends with a script
 clean_up() { kill -KILL $(jobs -p) 2>/dev/null; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"; }
 trap clean_up EXIT

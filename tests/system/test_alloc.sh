@@ -2,7 +2,6 @@
 # Memory runs out, once, at one place after another (tests/alloc/fail_alloc.c): every run ends by itself, with 1 and a
 # message, or with 0 and what the good run said. A sample over all places; test_alloc_all.sh tries each.
 . "$(dirname "$0")/common.sh"
-empty_cache
 
 build=$(realpath "$build")
 pitviper=$build/pitviper preload=$build/tests/libfail_alloc.so

@@ -4,7 +4,6 @@
 # damaged one. test_cache_deep.sh: other plants, two runs at once, folders that cannot be used. tests/base/test_cache.c: every octet
 # of an entry.
 . "$(dirname "$0")/common.sh"
-empty_cache
 
 exercise demo "$tmp/demo.pcap"
 few=(--only 0 --size 64x48 --no-files --set terrain.woods=on --set terrain.woods_far_m=0)

@@ -4,7 +4,6 @@
 # folders that cannot be used; another build; frame, explain, a radar and regress, cold and warm; killed runs; a small cache; no more
 # room on the disk and a disk that cannot be written, where mounts can be made. The same bits each time.
 . "$(dirname "$0")/common.sh"
-empty_cache
 
 exercise demo "$tmp/demo.pcap"
 few=(--only 0 --size 64x48 --no-files --set terrain.woods=on --set terrain.woods_far_m=0)

@@ -4,7 +4,6 @@
 # builds and tracers: test_determinism_builds.sh; live against replay: test_live.sh, where one node publishes on the
 # network and its replay does not.
 . "$(dirname "$0")/common.sh"
-empty_cache
 
 exercise demo "$tmp/demo.pcap"
 few=(--rate 1 --no-png "${coarse[@]}")

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # A debug build beside the optimized one of the same tree: the same bits. In build/asan, by etc/test --all.
 . "$(dirname "$0")/common.sh"
-empty_cache
 . "$(dirname "$0")/determinism.sh"
 needs "debug build: this one is optimized" grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Debug$' "$build/CMakeCache.txt"
 release=$(dirname "$build")/release/pitviper

@@ -3,7 +3,6 @@
 # the antimeridian, smoke and dust, malformed PDUs, several DIS versions, sensors with a memory. More of them:
 # test_determinism_scenes_deep.sh.
 . "$(dirname "$0")/common.sh"
-empty_cache
 . "$(dirname "$0")/live.sh"
 deep=${PITVIPER_SCENES_DEEP:-no}
 

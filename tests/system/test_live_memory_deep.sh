@@ -4,7 +4,6 @@
 # full, and is bounded, is full by then: tracks (32768), which it begins with, and sources of dust (16384), a report of a
 # vehicle each. labels: deep
 . "$(dirname "$0")/common.sh"
-empty_cache
 . "$(dirname "$0")/live.sh"
 needs "/proc/PID/status" test -r /proc/self/status
 

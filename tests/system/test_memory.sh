@@ -3,7 +3,6 @@
 # the node runs; one is killed, one is stopped and continued, and the run's frames stay the same. A name in use is
 # refused, a ring that a killed node left is replaced, no room is an error at the start; at the end nothing is left.
 . "$(dirname "$0")/common.sh"
-empty_cache
 
 judges python3.numpy
 needs "writable /dev/shm" test -w /dev/shm

@@ -3,7 +3,6 @@
 # memory, streams and writes video with KLV, sends Data PDUs, keeps the newest pictures and the latency ledger; and its file
 # descriptors are as many as before. PITVIPER_MEMORY_S=20 is a short look. labels: deep
 . "$(dirname "$0")/common.sh"
-empty_cache
 . "$(dirname "$0")/live.sh"
 
 seconds=${PITVIPER_MEMORY_S:-600}

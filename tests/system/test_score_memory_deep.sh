@@ -2,7 +2,6 @@
 # pitviper score holds answers, not frames: of 100,000 frames of 5 kB with three answers each, 90,000 frames need at most 200 octets an
 # answer (80 and 24 each, lists that double, a sort), and all less than 128 MB; the counts are those that were made. labels: deep
 . "$(dirname "$0")/common.sh"
-empty_cache
 needs "/proc/self/status" test -r /proc/self/status
 [[ "${sanitized:-}${ASAN_OPTIONS:-}${TSAN_OPTIONS:-}" = "" ]] || skip "memory of a sanitized build is not the program's"
 cat >"$tmp/make.py" <<'PY'

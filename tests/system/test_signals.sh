@@ -2,7 +2,6 @@
 # What would end the program in the middle of its products: a reader of its output that goes (`| head`), the signals that batch
 # systems announce the end of a job's time with, the limit of a file's size.
 . "$(dirname "$0")/common.sh"
-empty_cache
 . "$(dirname "$0")/live.sh"
 bare=("${quick[@]}")
 
