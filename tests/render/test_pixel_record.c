@@ -4,7 +4,7 @@
 #include "tests/render/strewn_world.h"
 #include "render/frame/pixel_record.h"
 
-enum { width = 96, height = 64, pixels = width * height, trees = 1500 };
+enum { width = 72, height = 48, pixels = width * height, trees = 1500 };
 
 static Plant       plant[trees];
 static Woods       woods;
@@ -103,15 +103,15 @@ static Picture kept(const RenderRequest *request)
     return p;
 }
 
-/* Every `step`-th pixel, and of those with targets or plants every sixteenth. */
-static Met record_some(const RenderRequest *request, int step)
+/* Every `step`-th pixel, and of those with targets or plants every `shown_step`-th. */
+static Met record_some(const RenderRequest *request, int step, int shown_step)
 {
     Met           met = {0};
     const Picture plain = kept(request);
     for (int i = 0, shown = 0; i < pixels; i++) {
         const bool more = plain.entity[i] || (plain.covered && plain.covered[i] > 0);
         shown += more;
-        if (i % step == 0 || (more && shown % 16 == 0)) record(&met, *request, &plain, i % width, i / width);
+        if (i % step == 0 || (more && shown % shown_step == 0)) record(&met, *request, &plain, i % width, i / width);
     }
     return met;
 }
@@ -120,7 +120,7 @@ static void terms_are_the_pixel(void **state)
 {
     (void)state;
     const RenderRequest request = smoky_request();
-    const Met           met = record_some(&request, 131);
+    const Met           met = record_some(&request, 79, 12);
     print_message(
         "%d pixels; means %d (%d split, %d refined), smoothed %d, small targets %d and what hides them %d; rays "
         "to the sky %d, ground %d, parts %d, plants %d; %d behind smoke\n",
@@ -138,12 +138,12 @@ static void in_every_mode(void **state)
     (void)state;
     RenderRequest request = smoky_request();
     request.sky_samples = 4, request.samples = 2;
-    Met met = record_some(&request, 997);
+    Met met = record_some(&request, 997, 32);
     CHECK(met.refined > 0 && met.kinds[PIXEL_TARGET] > 0 && met.colours == 0);
     request = smoky_request();
     request.sky_visibility = true;
     request.lateral[0] = 0.002, request.lateral[1] = -0.002;
-    met = record_some(&request, 997);
+    met = record_some(&request, 997, 32);
     CHECK(met.colours == met.pixels && met.kinds[PIXEL_TARGET] > 0);
 }
 

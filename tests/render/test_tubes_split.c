@@ -89,11 +89,11 @@ static void two_grids_of_a_tank_agree(void **state)
     for (int split = 0; split < 2; split++) {
         double off = 0, whole = 0;
         s.config.splits = split ? tubes_default_config(x_hz).splits : 0;
-        for (int i = 0; i < 6; i++) {
+        for (int i = 0; i < 4; i++) {
             ScatterMatrix m[2];
             for (int seed = 0; seed < 2; seed++) {
                 s.config.seed = (uint64_t)seed;
-                m[seed] = stage_look(&s, 60 * i + 0.37, 5 + 7 * (i % 4), 2000);
+                m[seed] = stage_look(&s, 60 * i + 0.37, 5 + 7 * i, 2000);
                 rays[split] += s.hits.rays;
             }
             off += power(m[0].hh - m[1].hh) + power(m[0].vv - m[1].vv);

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Window panes in the sun and in shade against Mitsuba 3 (polarised light, slabs of glass of index 1.5 before black): the image of the
 # sun in one, the sky near square and at a grazing angle, sunlit ground: within 2 %; ground at the foot of the wall within 4 %.
+# test_window_judge_deep.sh: light sampled over the hemisphere, too, and more of Mitsuba's samples.
 . "$(dirname "$0")/common.sh"
 judges python3.mitsuba
 

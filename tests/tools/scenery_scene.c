@@ -3,7 +3,8 @@
  *     scenery_scene FOLDER        for test_scenery_judge.sh: direct (the sun alone), quick (the default), sampled (sky
  *                                 and surroundings over the hemisphere)
  *     scenery_scene FOLDER panes  for test_window_judge.sh: its windows are smooth panes, and the sun is low: of each
- *                                 view VIEW.txt, VIEW.bin and VIEW_sampled.bin */
+ *                                 view VIEW.txt and VIEW.bin
+ *     scenery_scene FOLDER panes sampled  for test_window_judge_deep.sh: and VIEW_sampled.bin */
 #include "tests/scenes/stress_world.h"
 #include "tests/scenes/town.h"
 
@@ -119,7 +120,7 @@ static bool draw_house(StressWorld *w, const char *folder, double ground_m)
            draw(w, folder, &house, ground_m, &(Drawn){"quick.bin", {s[0], s[1], s[2]}, sky_w_m2_sr, 0});
 }
 
-static bool draw_windows(StressWorld *w, const char *folder, double ground_m)
+static bool draw_windows(StressWorld *w, const char *folder, double ground_m, bool sampled)
 {
     const double *s = low_sun_enu;
     bool          ok = true;
@@ -129,7 +130,8 @@ static bool draw_windows(StressWorld *w, const char *folder, double ground_m)
         ok = write_scene(folder, &window[k], s) &&
              draw(w, folder, &window[k], ground_m, &(Drawn){name, {s[0], s[1], s[2]}, sky_w_m2_sr, 0});
         snprintf(name, sizeof name, "%s_sampled.bin", window[k].name);
-        ok = ok && draw(w, folder, &window[k], ground_m, &(Drawn){name, {s[0], s[1], s[2]}, sky_w_m2_sr, 48});
+        if (ok && sampled)
+            ok = draw(w, folder, &window[k], ground_m, &(Drawn){name, {s[0], s[1], s[2]}, sky_w_m2_sr, 48});
     }
     return ok;
 }
@@ -138,8 +140,9 @@ int main(int argc, char **argv)
 {
     StressWorld w;
     Scenery     scenery = {0};
-    const bool  panes = argc == 3 && strcmp(argv[2], "panes") == 0;
-    bool        ok = (argc == 2 || panes) && stress_world_open(&w, 2) == STATUS_OK;
+    const bool  panes = argc >= 3 && strcmp(argv[2], "panes") == 0;
+    const bool  sampled = argc == 4 && strcmp(argv[3], "sampled") == 0;
+    bool        ok = (argc == 2 || (panes && argc == 3 + sampled)) && stress_world_open(&w, 2) == STATUS_OK;
     if (!ok) return 2;
     w.world.landscape = &w.landscape;
     detail_table_close(w.world.detail);
@@ -160,7 +163,7 @@ int main(int argc, char **argv)
     }
     /* what shines on the ground about it is of the materials as they are when scenery joins the world */
     ok = ok && world_scenery(&w.world, &scenery, NULL, w.pool) == STATUS_OK;
-    ok = ok && (panes ? draw_windows : draw_house)(&w, argv[1], ground_m);
+    ok = ok && (panes ? draw_windows(&w, argv[1], ground_m, sampled) : draw_house(&w, argv[1], ground_m));
     stress_world_close(&w);
     scenery_free(&scenery);
     return ok ? 0 : 1;
