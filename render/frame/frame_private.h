@@ -175,11 +175,12 @@ Status target_sums_gather(Picture *picture, const SumRules *rules, const WorkerS
  *   small targets  each sampled on a grid over its own box                 target_grid.c
  *   base           every pixel, without the small targets                  passes.c
  *   fill           at cheaper steps of sampling, pixels without rays       sampling.c
- *   edges          pixels whose neighbours differ, with more rays          edges.c, hot_parts.c select, refine.c
- * samples leaves         pixels of plants, smoothed among themselves              leaf_filter.c composite      the
- * small targets, over the pixels                      target_grid_picture.c error estimate a few pixels, re-sampled
- * error_estimate.c, plant_price.c Each of them shades samples (shade.h) and sums the results in its own way; render.c
- * runs them in turn. */
+ *   edges          pixels whose neighbours differ, with more rays          edges.c selects, refine.c samples
+ *                  pixels on narrow hot parts of clutter, too              hot_parts.c
+ *   leaves         pixels of plants, smoothed among themselves              leaf_filter.c
+ *   composite      the small targets, over the pixels                      target_grid_picture.c
+ *   error estimate a few pixels, re-sampled                                error_estimate.c, plant_price.c
+ * Each of them shades samples (shade.h) and sums the results in its own way; render.c runs them in turn. */
 
 enum { tile_side_samples = 32 };
 
