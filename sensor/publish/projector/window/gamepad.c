@@ -1,7 +1,8 @@
 /* sensor/publish/projector/window/gamepad.c: from sticks to poses of the operator's eye. */
 #include "sensor/publish/projector/window/gamepad.h"
 
-#include <netdb.h>
+#include "dis/network/host_port.h"
+
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -12,22 +13,12 @@ static const double zoom_least = 0.05, zoom_most = 100; /* as in a datagram */
 
 static int connect_to(const char *address_port)
 {
-    const struct addrinfo how = {.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV, .ai_socktype = SOCK_DGRAM};
-    struct addrinfo      *found = NULL;
-    char                  address[72];
-    snprintf(address, sizeof address, "%s", address_port);
-    char *colon = strrchr(address, ':'), *host = address;
-    if (!colon) return -1;
-    *colon = 0;
-    if (*host == '[' && colon[-1] == ']') colon[-1] = 0, host++;
-    if (getaddrinfo(host, colon + 1, &how, &found) != 0) return -1;
-    int s = socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    if (s >= 0 && connect(s, found->ai_addr, found->ai_addrlen) != 0) { /* 0.0.0.0 is this machine */
-        close(s);
-        s = -1;
-    }
-    freeaddrinfo(found);
-    return s;
+    HostPort to;
+    if (!host_port_parse(&to, address_port)) return -1;
+    const int s = socket(to.any.sa_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (s < 0 || connect(s, &to.any, host_port_size(&to)) == 0) return s; /* 0.0.0.0 is this machine */
+    close(s);
+    return -1;
 }
 
 bool gamepad_open(Gamepad *out, const char *address_port, bool relative, void (*say)(const char *text))
