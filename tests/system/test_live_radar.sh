@@ -37,9 +37,9 @@ node live "${few[@]}" --set radar.library="$tmp/library" --record "$tmp/live.pca
 check "it listens" heard_by live 'listening on'
 sender "$tmp/scene.yaml" --send 127.0.0.1:$port
 # while signatures are being made, updates are left out; then a target of the radar has its "rcs_dbsm"
-seen() { [ "$(grep -c '"rcs_dbsm":{' "$tmp/live/truth.jsonl")" -ge 5 ]; }
+seen() { [ "$(grep -c '"rcs_dbsm":{' "$tmp/live/truth.jsonl")" -ge 5 -a "$(ls "$tmp/library" | grep -c '\.sig$')" -ge 2 ]; }
 check "it makes frames" makes live 1
-check "the boxes are among the targets of five frames" until_of live seen
+check "the boxes are among the targets of five frames, and kept in the library" until_of live seen
 stop live
 end_sender
 check "the node ends well" [ $code = 0 ] || tail -n 5 "$tmp/live.out"
