@@ -56,7 +56,7 @@ while True:
         lwir = {"frame": frame, "band": "lwir", "detections": [{"class": "tank", "los_deg": [12.5, -3], "range_m": 900}]}
         for octets in ring(frame, 0, []), ring(frame, 1, [(3, 4, 20.5, 10)]), json.dumps(lwir).encode(), klv(frame, b"RADAR"):
             for port in sys.argv[2:]: to.sendto(octets, ("127.0.0.1", int(port)))
-    time.sleep(0.005)
+    time.sleep(0.05)
 PY
 answers=$!
 senders+=($answers)
@@ -112,7 +112,7 @@ run replay "$tmp/two.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 
     --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
 regress_case village # with buildings and clutter
-"$pitviper" replay "$tmp/village.pcap" "${case_options[@]}" --out "$tmp/village" --threads 1 --only 0 --bands lwir --no-png \
+"$pitviper" replay "$tmp/village.pcap" "${case_options[@]}" "${quickly[@]}" --out "$tmp/village" --threads 1 --only 0 --bands lwir --no-png \
     --set observer.range_m=300 --set observer.height_m=90 --set radar.preset=seeker_35 --set radar.given="$tmp/given.csv" \
     --coco --set publish.coco_clutter=true >"$tmp/stdout" 2>"$tmp/stderr"
 check "products with scenery" [ $? = 0 ] || cat "$tmp/stderr"
