@@ -121,47 +121,45 @@ static inline void offer(Packet *p, int lane, uint32_t triangle, double at_m, bo
     keep_tie(p, lane, triangle, at_m);
 }
 
-/* Fields of N rays lie one after another (rtcore_ray.h). */
-void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
+/* A triangle that a lane passes through; end_m: Embree's limit. */
+static inline void cover(Packet *p, int lane, double at_m, float *end_m)
 {
-    Packet        *p = (Packet *)a->context;
-    const Patch   *patch = &p->mesh->patch[a->primID];
-    float         *end_m = (float *)a->rayhit + 8 * a->N;
+    if (!(at_m < p->far_m[lane])) return;
+    *end_m = -INFINITY;
+    p->nearest_m[lane] = 0; /* met */
+}
+
+/* The rays that Embree asks for against a patch; its fields of n rays lie one after another (rtcore_ray.h). occludes:
+ * whether anything is met is asked, not what. */
+static inline void ask_patch(Packet *p, unsigned number, const int *valid, void *rays, unsigned n, bool occludes)
+{
+    const Patch   *patch = &p->mesh->patch[number];
+    float         *end_m = (float *)rays + 8 * n;
     uint8_t        place[lanes];
-    const unsigned asked = asked_lanes(place, a->valid, (const uint32_t *)a->rayhit + 10 * a->N, a->N);
+    const unsigned asked = asked_lanes(place, valid, (const uint32_t *)rays + 10 * n, n);
     for (int four = 0; four < lanes / 4; four++) {
         const unsigned of = asked >> 4 * four & 15;
         Verdict        v[patch_most];
         if (of == 0) continue;
         judge_patch(v, p, patch, four);
         for (unsigned f = 0; f < patch->count; f++)
-            for (unsigned left = v[f].near & of; left; left &= left - 1) {
+            for (unsigned left = (occludes ? v[f].through : v[f].near) & of; left; left &= left - 1) {
                 const int bit = __builtin_ctz(left), lane = 4 * four + bit;
-                offer(p, lane, patch->triangle + f, v[f].at_m[bit], v[f].through >> bit & 1, &end_m[place[lane]]);
+                float    *end = &end_m[place[lane]];
+                if (occludes) cover(p, lane, v[f].at_m[bit], end);
+                else offer(p, lane, patch->triangle + f, v[f].at_m[bit], v[f].through >> bit & 1, end);
             }
     }
 }
 
+void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
+{
+    ask_patch((Packet *)a->context, a->primID, a->valid, a->rayhit, a->N, false);
+}
+
 void parts_occlude(const struct RTCOccludedFunctionNArguments *a)
 {
-    Packet        *p = (Packet *)a->context;
-    const Patch   *patch = &p->mesh->patch[a->primID];
-    float         *end_m = (float *)a->ray + 8 * a->N;
-    uint8_t        place[lanes];
-    const unsigned asked = asked_lanes(place, a->valid, (const uint32_t *)a->ray + 10 * a->N, a->N);
-    for (int four = 0; four < lanes / 4; four++) {
-        const unsigned of = asked >> 4 * four & 15;
-        Verdict        v[patch_most];
-        if (of == 0) continue;
-        judge_patch(v, p, patch, four);
-        for (unsigned f = 0; f < patch->count; f++)
-            for (unsigned left = v[f].through & of; left; left &= left - 1) {
-                const int bit = __builtin_ctz(left), lane = 4 * four + bit;
-                if (!(v[f].at_m[bit] < p->far_m[lane])) continue;
-                end_m[place[lane]] = -INFINITY;
-                p->nearest_m[lane] = 0; /* met */
-            }
-    }
+    ask_patch((Packet *)a->context, a->primID, a->valid, a->ray, a->N, true);
 }
 
 /* ---- queries ------------------------------------------------------------------------------------ */
